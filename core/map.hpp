@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/events.hpp"
+#include "core/pose.hpp"
+
+namespace kinemap {
+
+enum class ObjectType : std::uint8_t { Wall, Table, Screen, Chair };
+
+/// Lower-case name used in the map JSON and on the command line ("wall", …).
+const char* to_string(ObjectType type);
+std::optional<ObjectType> object_type_from(const std::string& name);
+
+struct PlaneEquation {
+  Eigen::Vector3d normal;  ///< unit, map frame; towards the side from which the surface was touched
+  double offset = 0.0;     ///< n·p = offset, m
+};
+
+/// One standard deviation each, from the graph's marginal covariance.
+struct ObjectSigma {
+  double position_m = 0.0;
+  double heading_rad = 0.0;
+  std::array<double, 2> size_m{0.0, 0.0};
+};
+
+/// One object of the map, in the map frame (z up, metres); protocol/README.md gives the same fields in JSON.
+struct MapObject {
+  std::uint32_t id = 0;
+  ObjectType type = ObjectType::Wall;
+  std::vector<std::string> functions;  ///< what it is for: "sit", "place", "view", "bound"
+  Pose pose;                           ///< centre; chair: seat centre at seat height, +x where the sitter faces
+  std::optional<PlaneEquation> plane;
+  std::optional<std::array<Eigen::Vector3d, 4>> corners;  ///< in order round the rectangle
+  std::optional<std::array<double, 2>> size;              ///< [long, short], walls [length, height], m
+  ObjectSigma sigma;
+  int observations = 0;
+  double first_seen_s = 0.0;
+  double last_seen_s = 0.0;
+  bool height_assumed = false;  ///< walls: the height was not observed
+};
+
+/// A closed ring of walls, seen from inside.
+struct Room {
+  std::uint32_t id = 0;
+  std::vector<Eigen::Vector2d> polygon;  ///< counter-clockwise, map frame, m
+  double area_m2 = 0.0;
+  double height_m = 0.0;
+  bool height_assumed = true;
+  std::vector<std::uint32_t> wall_ids;
+};
+
+struct TrajectoryPose {
+  KeyPoseId id = 0;
+  double time_s = 0.0;
+  Pose T_map_pelvis;
+  Pose T_odom_pelvis;
+};
+
+/// A trace that was neither wall nor rectangle, kept so that nothing is dropped in silence.
+struct UnresolvedTrace {
+  double begin_s = 0.0;
+  double end_s = 0.0;
+  std::string reason;
+};
+
+struct GraphSummary {
+  std::size_t key_poses = 0;
+  std::size_t landmarks = 0;
+  std::size_t contacts = 0;
+  std::size_t loop_closures = 0;           ///< observations associated with an object that was there
+  std::size_t loop_closures_revoked = 0;   ///< closures that the optimum contradicted, taken back
+  std::size_t optimisations = 0;
+  std::size_t optimisations_failed = 0;
+  double last_cost = 0.0;
+};
+
+/// Everything the mapper knows at one instant. Immutable once published; shared between threads by shared_ptr<const MapSnapshot>.
+struct MapSnapshot {
+  std::uint64_t revision = 0;  ///< grows by one at each publication
+  double time_s = 0.0;         ///< stream time of the newest event in it
+  std::vector<MapObject> objects;  ///< by ascending id
+  std::vector<Room> rooms;
+  std::vector<TrajectoryPose> trajectory;
+  std::vector<UnresolvedTrace> unresolved;
+  Pose T_map_odom;  ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
+  GraphSummary graph;
+};
+
+}  // namespace kinemap

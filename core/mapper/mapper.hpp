@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "core/body.hpp"
+#include "core/events.hpp"
+#include "core/graph/graph.hpp"
+#include "core/map.hpp"
+#include "core/mapper/config.hpp"
+
+namespace kinemap {
+
+/// Owns the graph: adds events, extracts landmarks, associates, closes loops, optimises and publishes snapshots. A fold over events:
+/// the same events give the same map, byte for byte. Not thread-safe: one thread owns it; snapshots may go anywhere.
+class Mapper {
+ public:
+  explicit Mapper(const MapperConfig& config);
+  ~Mapper();
+  Mapper(Mapper&&) noexcept;
+  Mapper& operator=(Mapper&&) noexcept;
+
+  /// What is known of the wearer's hand; applies to traces that follow (and to those before, at the next optimisation).
+  void set_wearer(const WearerInfo& wearer);
+
+  /// Takes one event. Optimises when it closes a loop. True when a new snapshot was published.
+  bool add(const Event& event);
+
+  /// No more events: optimises to convergence and publishes a last snapshot.
+  void finish();
+
+  /// The newest snapshot; never null (revision 0 is the empty map).
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const;
+
+  /// The graph as it stands (poses by KeyPoseId), for export.
+  [[nodiscard]] const graph::Graph& graph() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kinemap

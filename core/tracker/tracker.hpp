@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/body.hpp"
+#include "core/events.hpp"
+#include "core/tracker/config.hpp"
+
+namespace kinemap {
+
+/// What the tracker saw, for the status page.
+struct TrackerStats {
+  std::uint64_t frames = 0;
+  std::uint64_t key_poses = 0;
+  std::uint64_t traces = 0;
+  std::uint64_t traces_rejected = 0;  ///< gestures too short or without motion of the right hand
+  std::uint64_t sittings = 0;
+  std::uint64_t contacts_thinned_out = 0;  ///< contacts left out because a trace reached its limit
+  double path_m = 0.0;                ///< length of the level pelvis path
+};
+
+/// A fold over frames: what the wearer does, as events. Deterministic; one call costs microseconds; memory is bounded by
+/// the longest trace allowed. Not thread-safe: one thread owns it.
+class Tracker {
+ public:
+  explicit Tracker(const TrackerConfig& config);
+  ~Tracker();
+  Tracker(Tracker&&) noexcept;
+  Tracker& operator=(Tracker&&) noexcept;
+
+  /// Takes the next frame and appends the events that it completes, in order of time. A Trace or Sitting only refers to
+  /// key poses that were emitted before it.
+  void step(const SuitFrame& frame, std::vector<Event>& events);
+
+  /// The stream ended: closes an open trace or sitting and appends a last key pose.
+  void finish(std::vector<Event>& events);
+
+  [[nodiscard]] const TrackerStats& stats() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kinemap

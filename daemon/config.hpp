@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/mapper/config.hpp"
+#include "core/tracker/config.hpp"
+#include "protocol/assembler.hpp"
+#include "protocol/wire/result.hpp"
+
+namespace kinemap {
+
+/// Everything that can be configured; each part owns its struct and its defaults, this only aggregates. config/default.json
+/// holds every key at its default and config/README.md explains each.
+struct Config {
+  struct Suit {
+    std::string transport = "udp";        ///< "udp" or "tcp" (MVN connects to us)
+    std::string address = "0.0.0.0";
+    std::uint16_t port = 9763;
+    int receive_buffer_bytes = 4194304;
+  } suit;
+  AssemblerConfig stream;
+  TrackerConfig tracker;
+  MapperConfig mapper;
+  struct Api {
+    std::string address = "127.0.0.1";
+    std::uint16_t port = 8765;
+    double pose_rate_hz = 20.0;           ///< how often the stream pushes the pose
+    int max_clients = 64;
+    std::size_t client_buffer_bytes = 4194304;  ///< a slower client loses messages beyond it, then its connection
+  } api;
+  struct Log {
+    std::string level = "info";           ///< trace, debug, info, warn, error; SIGHUP rereads it
+  } log;
+};
+
+/// Reads a config text (JSON with // and /* */ comments). Refuses, never repairs: unknown key, wrong type or range → the full key
+/// path and what is allowed; a syntax error → line and column. `path` is for the message only.
+Result<Config> config_from_text(const std::string& text, const std::string& path);
+Result<Config> config_from_file(const std::string& path);
+/// Every key with its value.
+nlohmann::ordered_json to_json(const Config& config);
+
+}  // namespace kinemap

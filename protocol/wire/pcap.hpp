@@ -16,8 +16,8 @@ namespace kinemap {
 
 /// One UDP payload out of a capture (or off a socket).
 struct UdpPacket {
-  double time_s = 0.0;          ///< capture time, seconds since the epoch of the capture's clock
-  std::string source;           ///< "address:port"
+  double time_s = 0.0;  ///< capture time, seconds since the epoch of the capture's clock
+  std::string source;   ///< "address:port"
   std::uint16_t destination_port = 0;
   std::vector<std::byte> payload;
 };
@@ -25,15 +25,15 @@ struct UdpPacket {
 struct PcapStats {
   std::uint64_t records = 0;
   std::uint64_t udp = 0;
-  std::uint64_t not_udp = 0;            ///< ARP, TCP, …
-  std::uint64_t truncated = 0;          ///< snap length cut the packet, or lengths inside it disagree
+  std::uint64_t not_udp = 0;    ///< ARP, TCP, …
+  std::uint64_t truncated = 0;  ///< snap length cut the packet, or lengths inside it disagree
   std::uint64_t fragments = 0;
   std::uint64_t fragments_unfinished = 0;  ///< datagrams of which a part never came
   std::uint64_t bytes_read = 0;
 };
 
-/// Reads classic libpcap files: µs and ns, both byte orders; Ethernet (with VLAN tags), raw IP, Linux cooked v1 and v2, BSD loopback;
-/// IPv4 and IPv6 UDP; IP fragments are put together.
+/// Reads classic libpcap files: µs and ns, both byte orders; Ethernet (with VLAN tags), raw IP, Linux cooked v1 and v2,
+/// BSD loopback; IPv4 and IPv6 UDP; IP fragments are put together.
 class PcapReader {
  public:
   static Result<PcapReader> open(const std::string& path);
@@ -41,7 +41,8 @@ class PcapReader {
   PcapReader(PcapReader&&) noexcept;
   PcapReader& operator=(PcapReader&&) noexcept;
 
-  /// Next UDP packet; nullopt at the end of the file; an Error (path, byte offset, what was expected) when it is damaged there.
+  /// Next UDP packet; nullopt at the end of the file; an Error (path, byte offset, what was expected) when it is
+  /// damaged there.
   Result<std::optional<UdpPacket>> next();
   [[nodiscard]] const PcapStats& stats() const;
   [[nodiscard]] std::uint64_t file_size() const;

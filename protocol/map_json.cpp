@@ -1,2 +1,118 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/map_json.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "protocol/json_text.hpp"
+
+namespace kinemap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kVersion = 1;
+
+/// A number rounded to a micrometre (microradian, microsecond): far below any sigma, and short to read. No −0.
+double rounded(double value) {
+  assert(std::isfinite(value));
+  return std::round(value * 1e6) / 1e6 + 0.0;
+}
+
+template <class Vector>
+Json array_of(const Vector& values) {
+  Json array = Json::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) array.push_back(rounded(values[i]));
+  return array;
+}
+
+Json array_of(const std::array<double, 2>& values) { return {rounded(values[0]), rounded(values[1])}; }
+
+Json pose_json(const Pose& pose) {
+  // q and −q are one rotation; w ≥ 0 makes equal maps equal bytes.
+  const double sign = pose.q.w() < 0.0 ? -1.0 : 1.0;
+  return {{"position", array_of(pose.p)},
+          {"orientation", Json::array({rounded(sign * pose.q.w()), rounded(sign * pose.q.x()),
+                                       rounded(sign * pose.q.y()), rounded(sign * pose.q.z())})}};
+}
+
+/// Sigmas that are unknown (0, or not finite) are left out, as everything unknown is.
+Json sigma_json(const MapObject& object) {
+  const auto known = [](double sigma) { return std::isfinite(sigma) && sigma > 0.0; };
+  const ObjectSigma& sigma = object.sigma;
+  Json json = Json::object();
+  if (known(sigma.position_m)) json["position"] = rounded(sigma.position_m);
+  if (known(sigma.heading_rad)) json["heading"] = rounded(sigma.heading_rad);
+  if (object.size && known(sigma.size_m[0]) && known(sigma.size_m[1])) json["size"] = array_of(sigma.size_m);
+  return json;
+}
+
+Json graph_json(const GraphSummary& graph) {
+  return {{"key_poses", graph.key_poses},
+          {"landmarks", graph.landmarks},
+          {"contacts", graph.contacts},
+          {"loop_closures", graph.loop_closures},
+          {"loop_closures_revoked", graph.loop_closures_revoked},
+          {"optimisations", graph.optimisations},
+          {"optimisations_failed", graph.optimisations_failed},
+          {"last_cost", rounded(graph.last_cost)}};
+}
+
+template <class List>
+Json list_json(const List& list) {
+  Json array = Json::array();
+  for (const auto& item : list) array.push_back(to_json(item));
+  return array;
+}
+
+}  // namespace
+
+Json to_json(const MapObject& object) {
+  Json json = {{"id", object.id}, {"type", to_string(object.type)}, {"functions", object.functions}};
+  json["pose"] = pose_json(object.pose);
+  if (object.plane)
+    json["plane"] = {{"normal", array_of(object.plane->normal)}, {"offset", rounded(object.plane->offset)}};
+  if (object.corners) {
+    Json& corners = json["corners"] = Json::array();
+    for (const Eigen::Vector3d& corner : *object.corners) corners.push_back(array_of(corner));
+  }
+  if (object.size) json["size"] = array_of(*object.size);
+  if (object.height_assumed) json["height_assumed"] = true;
+  if (Json sigma = sigma_json(object); !sigma.empty()) json["sigma"] = std::move(sigma);
+  json["observations"] = object.observations;
+  json["first_seen"] = rounded(object.first_seen_s);
+  json["last_seen"] = rounded(object.last_seen_s);
+  return json;
+}
+
+Json to_json(const Room& room) {
+  Json json = {{"id", room.id}, {"polygon", Json::array()}};
+  for (const Eigen::Vector2d& corner : room.polygon) json["polygon"].push_back(array_of(corner));
+  json["area"] = rounded(room.area_m2);
+  json["height"] = rounded(room.height_m);
+  if (room.height_assumed) json["height_assumed"] = true;
+  json["walls"] = Json::array();
+  for (const std::uint32_t id : room.wall_ids) json["walls"].push_back(id);
+  return json;
+}
+
+Json to_json(const MapSnapshot& map) {
+  Json json = {{"format", "kinemap/map"},
+               {"version", kVersion},
+               {"revision", map.revision},
+               {"time", rounded(map.time_s)},
+               {"frame", {{"id", "map"}, {"up", "+z"}, {"units", "m"}}}};
+  json["objects"] = list_json(map.objects);
+  json["rooms"] = list_json(map.rooms);
+  Json& unresolved = json["unresolved"] = Json::array();
+  for (const UnresolvedTrace& trace : map.unresolved)
+    unresolved.push_back({{"begin", rounded(trace.begin_s)}, {"end", rounded(trace.end_s)}, {"reason", trace.reason}});
+  json["correction"] = pose_json(map.T_map_odom);
+  json["graph"] = graph_json(map.graph);
+  return json;
+}
+
+std::string map_text(const MapSnapshot& map) { return pretty_text(to_json(map)); }
+
+}  // namespace kinemap

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/gltf.hpp"
+
+#include <algorithm>
+
+#include "protocol/gltf_builder.hpp"
+#include "protocol/map_json.hpp"
+#include "protocol/triangulate.hpp"
+
+namespace kinemap {
+namespace {
+
+using gltf::Mesh;
+
+constexpr double kSlab = 0.03;      ///< m: a suit that touches faces knows nothing of their thickness
+constexpr double kSeatSide = 0.42;  ///< m: nor of the shape of a seat; only where it is and which way it faces
+constexpr double kBackHeight = 0.4;
+
+std::vector<Eigen::Vector3d> level_rectangle(const Pose& pose, double half_x, double half_y) {
+  return {pose * Eigen::Vector3d(half_x, half_y, 0), pose * Eigen::Vector3d(-half_x, half_y, 0),
+          pose * Eigen::Vector3d(-half_x, -half_y, 0), pose * Eigen::Vector3d(half_x, -half_y, 0)};
+}
+
+/// A seat with a back rest behind the sitter.
+Mesh seat_mesh(const Pose& pose) {
+  const double half = kSeatSide / 2;
+  Mesh mesh = gltf::slab(level_rectangle(pose, half, half), pose.q * Eigen::Vector3d::UnitZ(), kSlab);
+  const std::vector<Eigen::Vector3d> back = {
+      pose * Eigen::Vector3d(-half, -half, 0), pose * Eigen::Vector3d(-half, half, 0),
+      pose * Eigen::Vector3d(-half, half, kBackHeight), pose * Eigen::Vector3d(-half, -half, kBackHeight)};
+  const Mesh rest = gltf::slab(back, pose.q * Eigen::Vector3d::UnitX(), kSlab);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), rest.positions.begin(), rest.positions.end());
+  mesh.normals.insert(mesh.normals.end(), rest.normals.begin(), rest.normals.end());
+  for (const std::uint32_t i : rest.indices) mesh.indices.push_back(base + i);
+  return mesh;
+}
+
+/// The rectangle of a planar object, corners turned so that they run counter-clockwise about the plane's normal.
+Mesh planar_mesh(const MapObject& object) {
+  std::vector<Eigen::Vector3d> outline(object.corners->begin(), object.corners->end());
+  const Eigen::Vector3d& normal = object.plane->normal;
+  if ((outline[1] - outline[0]).cross(outline[2] - outline[1]).dot(normal) < 0.0)
+    std::reverse(outline.begin(), outline.end());
+  return gltf::slab(outline, normal, kSlab);
+}
+
+Mesh floor_mesh(const Room& room, double z) {
+  Mesh mesh;
+  for (const Eigen::Vector2d& p : room.polygon) {
+    mesh.positions.emplace_back(Eigen::Vector3d(p.x(), p.y(), z).cast<float>());
+    mesh.normals.push_back(Eigen::Vector3f::UnitZ());
+  }
+  for (const auto& [a, b, c] : triangulate(room.polygon)) mesh.indices.insert(mesh.indices.end(), {a, b, c});
+  return mesh;
+}
+
+/// Where the floor of a room is drawn: at the lowest corner of its walls.
+double floor_of(const MapSnapshot& map, const Room& room) {
+  double z = 0.0;
+  bool known = false;
+  for (const MapObject& object : map.objects) {
+    if (!object.corners || std::find(room.wall_ids.begin(), room.wall_ids.end(), object.id) == room.wall_ids.end())
+      continue;
+    for (const Eigen::Vector3d& corner : *object.corners) z = known ? std::min(z, corner.z()) : corner.z();
+    known = true;
+  }
+  return z;
+}
+
+}  // namespace
+
+std::string glb_bytes(const MapSnapshot& map) {
+  gltf::Builder builder;
+  const std::array<int, 4> material = {
+      builder.add_material("wall", {0.75, 0.78, 0.82, 0.35}), builder.add_material("table", {0.55, 0.33, 0.14, 1.0}),
+      builder.add_material("screen", {0.03, 0.09, 0.20, 1.0}), builder.add_material("chair", {0.12, 0.42, 0.25, 1.0})};
+  const int floor = builder.add_material("floor", {0.60, 0.58, 0.53, 1.0});
+  const int path = builder.add_material("trajectory", {0.90, 0.25, 0.05, 1.0});
+
+  for (const Room& room : map.rooms)
+    if (const Mesh mesh = floor_mesh(room, floor_of(map, room)); !mesh.indices.empty())
+      builder.add_node("room " + std::to_string(room.id), mesh, floor, to_json(room));
+  for (const MapObject& object : map.objects) {
+    const bool planar = object.plane && object.corners;
+    if (!planar && object.type != ObjectType::Chair) continue;  // nothing is known of its extent
+    const std::string name = std::string(to_string(object.type)) + " " + std::to_string(object.id);
+    builder.add_node(name, planar ? planar_mesh(object) : seat_mesh(object.pose),
+                     material[static_cast<std::size_t>(object.type)], to_json(object));
+  }
+  if (map.trajectory.size() >= 2) {
+    Mesh line;
+    for (const TrajectoryPose& pose : map.trajectory) line.positions.emplace_back(pose.T_map_pelvis.p.cast<float>());
+    builder.add_line("trajectory", line, path);
+  }
+  return builder.bytes();
+}
+
+}  // namespace kinemap

@@ -1,16 +1,92 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 namespace kinemap {
 
 /// Angles in radians, lengths in metres, times in seconds. config/README.md explains each key to users.
+/// A pair *_on / *_off is a hysteresis: the state begins at *_on and lasts until *_off. Everything is judged by stream
+/// time, never by counting frames. "Share" is a part of a length of the wearer's own body, so that it holds for every
+/// stature.
 struct TrackerConfig {
   struct KeyPoses {
-    double distance_m = 0.2;    ///< level distance since the last key pose (paper, section V)
-    double turn_rad = 0.1745;   ///< heading change since the last key pose
-    double tracing_s = 1.0;     ///< time since the last key pose while tracing or sitting
-    double idle_s = 10.0;       ///< time since the last key pose otherwise
+    double distance_m = 0.2;   ///< level distance since the last key pose (paper, section V)
+    double turn_rad = 0.1745;  ///< heading change since the last key pose
+    double tracing_s = 1.0;    ///< time since the last key pose while tracing or sitting
+    double idle_s = 10.0;      ///< time since the last key pose otherwise
+    double path_step_m =
+        0.02;  ///< the path is summed in steps of this length, so that neither noise nor frame rate lengthens it
+    double turn_step_rad = 0.0175;  ///< the same for the sum of heading changes
   } key_poses;
+
+  /// Which foot carries the weight, and how far the floor is under it.
+  struct Stance {
+    double rest_speed_mps = 0.4;  ///< an ankle slower than this rests
+    double smoothing_s = 0.05;    ///< time constant of the ankle's speed
+    double flat_rad = 0.35;       ///< a foot pitched or rolled more than this is rolling off, its sole is not the floor
+    double ball_height_m = 0.02;  ///< the ball of the foot (origin of the toe segment) over the sole
+    double above_lower_m = 0.04;  ///< a sole so far above the other one does not carry the weight
+  } stance;
+
+  /// Left hand on the hip: the wearer's word that the right hand shows something.
+  struct Gesture {
+    double elbow_on_rad = 2.09;  ///< inner angle between upper arm and forearm
+    double elbow_off_rad = 2.36;
+    double hip_on_m = 0.19;  ///< wrist, palm or finger to the iliac crest
+    double hip_off_m = 0.25;
+    double crest_up_m = 0.10;     ///< iliac crest over the hip joint, in the pelvis frame
+    double crest_out_m = 0.06;    ///< iliac crest outside the hip joint, in the pelvis frame
+    double below_hip_on_m = 0.0;  ///< the palm may be so far below the hip joint; lower is a pocket or a hanging arm
+    double below_hip_off_m = 0.04;
+    double inside_hip_on_m =
+        0.0;  ///< wrist and palm may both be so far inside of the hip joint; more is the belly or the lap
+    double inside_hip_off_m = 0.03;
+    double speed_on_mps = 0.35;  ///< hand against pelvis; a hand that swings past the hip does not lie on it
+    double speed_off_mps = 0.8;
+    double smoothing_s = 0.15;  ///< time constant of that speed
+    double palm_m = 0.09;       ///< middle of the palm, along the hand from the wrist
+    double finger_m = 0.18;     ///< finger tips, along the hand from the wrist
+  } gesture;
+
+  struct Traces {
+    double min_duration_s = 1.0;       ///< shorter gestures are rejected
+    double min_extent_m = 0.25;        ///< the right hand must come so far from where it began
+    double dropout_s = 0.4;            ///< the gesture may be lost for so long without splitting the trace
+    double gap_s = 1.0;                ///< without a frame for so long the trace ends
+    double spacing_m = 0.01;           ///< a contact is kept when the wrist or the hand's point has moved so far
+    double spacing_s = 0.1;            ///< … or after this time
+    double hand_point_m = 0.15;        ///< the hand's point, along the hand from the wrist
+    std::size_t max_contacts = 20000;  ///< bound of a trace; further contacts are counted, not kept
+  } traces;
+
+  struct Sitting {
+    double thigh_on = 0.40;      ///< (hip over knee) / thigh length, mean of both legs: 1 standing, 0 level thighs
+    double thigh_low_on = 0.53;  ///< the same while the hips are below low_hips_m: short wearers on ordinary chairs
+    double thigh_off = 0.65;
+    double thigh_spread = 0.12;    ///< either thigh may exceed the limit of the mean by so much
+    double low_hips_m = 0.65;      ///< hips over the floor below which steeper thighs are no perch
+    double hips_min_share = 0.34;  ///< hips over the floor / leg length; lower is the floor, a deep squat or lying
+    double hips_max_share = 0.88;
+    double shank_min = 0.40;     ///< (knee over ankle) / shank length; less, with the ankle behind the knee, is a kneel
+    double trunk_min = 0.35;     ///< upward part of the direction pelvis → neck; less is lying or a deep stoop
+    double speed_on_mps = 0.12;  ///< the pelvis is still below this speed
+    double speed_off_mps = 0.25;
+    double smoothing_s = 0.25;   ///< time constant of that speed
+    double outside_on_m = 0.05;  ///< centre of mass outside the foot polygon: something else carries the weight
+    double outside_off_m = 0.03;
+    double min_unsupported_share = 0.3;  ///< of the still time
+    double min_unsupported_s = 1.0;
+    double min_still_s = 1.5;     ///< shorter bouts are dropped
+    double dropout_s = 0.4;       ///< the posture may be lost for so long without ending the bout
+    double gap_s = 2.0;           ///< without a frame for so long the bout ends
+    double moved_m = 0.5;         ///< the pelvis rested so far from where the bout began: another place, another bout
+    double hip_to_seat_m = 0.09;  ///< hip joints over the seat (hip joint to sitting bone)
+    double seat_behind_hip_m = 0.07;  ///< seat centre behind the hip mid-point
+    double sample_s = 0.1;            ///< spacing of the samples that are averaged
+    std::size_t max_samples =
+        600;  ///< bound of a bout; beyond it every second sample is dropped and the spacing doubled
+  } sitting;
 };
 
 }  // namespace kinemap

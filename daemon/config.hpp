@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "core/mapper/config.hpp"
 #include "core/tracker/config.hpp"
@@ -12,11 +13,11 @@
 
 namespace kinemap {
 
-/// Everything that can be configured; each part owns its struct and its defaults, this only aggregates. config/default.json
-/// holds every key at its default and config/README.md explains each.
+/// Everything that can be configured; each part owns its struct and its defaults, this only aggregates.
+/// config/default.json holds every key at its default and config/README.md explains each.
 struct Config {
   struct Suit {
-    std::string transport = "udp";        ///< "udp" or "tcp" (MVN connects to us)
+    std::string transport = "udp";  ///< "udp" or "tcp" (MVN connects to us)
     std::string address = "0.0.0.0";
     std::uint16_t port = 9763;
     int receive_buffer_bytes = 4194304;
@@ -27,20 +28,32 @@ struct Config {
   struct Api {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;
-    double pose_rate_hz = 20.0;           ///< how often the stream pushes the pose
+    double pose_rate_hz = 20.0;  ///< how often the stream pushes the pose
     int max_clients = 64;
     std::size_t client_buffer_bytes = 4194304;  ///< a slower client loses messages beyond it, then its connection
   } api;
   struct Log {
-    std::string level = "info";           ///< trace, debug, info, warn, error; SIGHUP rereads it
+    std::string level = "info";  ///< trace, debug, info, warn, error; SIGHUP rereads it
   } log;
 };
 
-/// Reads a config text (JSON with // and /* */ comments). Refuses, never repairs: unknown key, wrong type or range → the full key
-/// path and what is allowed; a syntax error → line and column. `path` is for the message only.
+/// Reads a config text (JSON with // and /* */ comments). Refuses, never repairs: unknown key, wrong type or range →
+/// the full key path and what is allowed; a syntax error → line and column. `path` is for the message only.
 Result<Config> config_from_text(const std::string& text, const std::string& path);
 Result<Config> config_from_file(const std::string& path);
 /// Every key with its value.
 nlohmann::ordered_json to_json(const Config& config);
+
+/// One key as the documentation has it.
+struct ConfigKey {
+  std::string path;           ///< "tracker.key_poses.distance_m"
+  std::string unit;           ///< "" where there is none
+  std::string default_value;  ///< as JSON
+  std::string allowed;        ///< "0.01 to 10 m", "\"udp\", \"tcp\""
+};
+/// Every key, in the order of config/default.json.
+std::vector<ConfigKey> config_keys();
+/// The paths of all keys in which the two differ.
+std::vector<std::string> changed_keys(const Config& a, const Config& b);
 
 }  // namespace kinemap

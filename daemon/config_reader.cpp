@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/config_reader.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace kinemap {
+
+std::string describe(const Range& range) {
+  char text[96];
+  const bool plain =
+      std::string(range.unit) == "1" || std::string(range.unit) == "id" || std::string(range.unit) == "port";
+  std::snprintf(text, sizeof text, "%.10g to %.10g%s%s", range.min, range.max, plain ? "" : " ",
+                plain ? "" : range.unit);
+  return text;
+}
+
+std::string describe(std::initializer_list<const char*> allowed) {
+  std::string text;
+  for (const char* item : allowed) text += (text.empty() ? "\"" : ", \"") + std::string(item) + "\"";
+  return text;
+}
+
+const ConfigReader::Json* ConfigReader::find(const char* key) {
+  known_.emplace_back(key);
+  if (error_) return nullptr;
+  const auto it = json_.find(key);
+  return it == json_.end() ? nullptr : &*it;
+}
+
+void ConfigReader::flag(const char* key, bool& target) {
+  const Json* value = find(key);
+  if (value == nullptr) return;
+  if (!value->is_boolean()) return fail(path_of(key), "must be true or false, not " + shown(*value));
+  target = value->get<bool>();
+}
+
+void ConfigReader::choice(const char* key, std::string& target, std::initializer_list<const char*> allowed) {
+  const Json* value = find(key);
+  if (value == nullptr) return;
+  const auto is = [&](const char* item) { return value->is_string() && value->get_ref<const std::string&>() == item; };
+  if (std::none_of(allowed.begin(), allowed.end(), is))
+    return fail(path_of(key), "must be one of " + describe(allowed) + ", not " + shown(*value));
+  target = value->get<std::string>();
+}
+
+void ConfigReader::address(const char* key, std::string& target) {
+  const Json* value = find(key);
+  if (value == nullptr) return;
+  const std::string text = value->is_string() ? value->get<std::string>() : std::string();
+  in6_addr ignored{};
+  if (inet_pton(AF_INET, text.c_str(), &ignored) != 1 && inet_pton(AF_INET6, text.c_str(), &ignored) != 1)
+    return fail(path_of(key), std::string("must be ") + kAddressAllowed + " in quotes, not " + shown(*value));
+  target = text;
+}
+
+std::string ConfigReader::shown(const Json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "a list";
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 60) + "…";
+  return text;
+}
+
+void ConfigReader::fail(const std::string& path, const std::string& message) {
+  if (!error_) error_ = path + ": " + message;
+}
+
+void ConfigReader::refuse_unknown() {
+  for (const auto& [key, value] : json_.items()) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    std::string allowed;
+    for (const auto& name : known_) allowed += (allowed.empty() ? "" : ", ") + name;
+    return fail(path_of(key), "unknown key; allowed here: " + allowed);
+  }
+}
+
+}  // namespace kinemap

@@ -35,6 +35,7 @@ struct HandContact {
 struct Trace {
   double begin_s = 0.0;
   double end_s = 0.0;
+  std::optional<double> stature_m;    ///< the wearer's body height as the bone lengths of the stream give it away
   std::vector<HandContact> contacts;  ///< in order of time, thinned by distance and time
 };
 

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/landmarks/extract.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/landmarks/geometry.hpp"
+
+namespace kinemap {
+namespace {
+
+using graph::Landmark;
+using graph::LandmarkKind;
+
+constexpr double kMinLeftover = 3.0;  // s
+
+struct Attempt {
+  std::optional<Observation> observation;
+  std::string reason;
+};
+
+/// Members of the surface in its plane: first axis `u`, second `v`, from `origin`.
+std::vector<Eigen::Vector2d> in_plane(std::span<const TracePoint> points, const Surface& surface, const Eigen::Vector3d& origin,
+                                      const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  std::vector<Eigen::Vector2d> flat;
+  flat.reserve(surface.members.size());
+  for (const std::size_t i : surface.members) flat.emplace_back(u.dot(points[i].p - origin), v.dot(points[i].p - origin));
+  return flat;
+}
+
+/// A surface that leans is neither level nor upright: the plane of the paper's fit (SVD) must agree where the contacts determine it.
+bool leans(std::span<const TracePoint> points, const Surface& surface, double max_slant) {
+  std::vector<Eigen::Vector3d> members;
+  for (const std::size_t i : surface.members) members.push_back(points[i].p);
+  const auto plane = fit_plane(members);
+  if (!plane || plane->extent[1] < 0.1 || plane->extent[1] < 4.0 * plane->extent[2]) return false;
+  return std::abs(plane->normal.dot(surface.normal)) < std::cos(max_slant);
+}
+
+Attempt table(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
+  const double height = surface.offset - floor_z;
+  if (height < config.table_min_height_m || height > config.table_max_height_m)
+    return {std::nullopt, "a level surface, but not at the height of a table"};
+  const auto flat = in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  const auto fit = fit_rectangle(flat, config);
+  if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
+  Observation seen;
+  seen.landmark.kind = LandmarkKind::Table;
+  seen.landmark.x = {fit->centre.x(), fit->centre.y(), surface.offset, fit->heading, fit->size[0], fit->size[1], 0.0};
+  seen.contacts = surface.members;
+  seen.labels = fit->labels;
+  seen.closed = fit->closed;
+  return {seen, {}};
+}
+
+Attempt screen(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
+  const double heading = std::atan2(surface.normal.y(), surface.normal.x());
+  const Eigen::Vector3d u(-std::sin(heading), std::cos(heading), 0.0);
+  const Eigen::Vector3d foot = surface.offset * surface.normal;
+  const auto flat = in_plane(points, surface, foot, u, Eigen::Vector3d::UnitZ());
+  const auto fit = fit_rectangle(flat, config, 0.0);
+  // Three sides and a contour that comes back most of the way round: a hand that waves along a wall does not.
+  if (!fit || std::count(fit->drawn.begin(), fit->drawn.end(), true) < 3 ||
+      std::abs(winding(flat, fit->centre)) < 1.4 * std::numbers::pi)
+    return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
+  const double worst = 0.03 + 0.06 * std::min(fit->size[0], fit->size[1]);
+  const auto labelled = std::count_if(fit->labels.begin(), fit->labels.end(),
+                                      [](const SideLabel& l) { return l.edge != graph::Edge::None; });
+  if (fit->rms > worst || 2 * static_cast<std::size_t>(labelled) < flat.size())
+    return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
+  Observation seen;
+  seen.landmark.kind = LandmarkKind::Screen;
+  const Eigen::Vector3d centre = foot + fit->centre.x() * u + fit->centre.y() * Eigen::Vector3d::UnitZ();
+  seen.landmark.x = {centre.x(), centre.y(), centre.z(), heading, fit->size[0], fit->size[1], 0.0};
+  seen.contacts = surface.members;
+  seen.labels = fit->labels;
+  seen.closed = fit->closed;
+  return {seen, {}};
+}
+
+Attempt wall(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
+  const Eigen::Vector3d along(-surface.normal.y(), surface.normal.x(), 0.0);
+  const double apart = std::abs(along.dot(points[surface.members.back()].p - points[surface.members.front()].p));
+  if (apart < config.wall_min_extent_m)
+    return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
+  Observation seen;
+  seen.landmark.kind = LandmarkKind::Wall;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const std::size_t i : surface.members) mean += points[i].p / static_cast<double>(surface.members.size());
+  const double off = surface.normal.dot(mean) - surface.offset;
+  seen.landmark.anchor = mean - off * surface.normal;  // near the contacts, on the plane
+  seen.landmark.x[0] = std::atan2(surface.normal.y(), surface.normal.x());
+  seen.landmark.x[1] = 0.0;
+  seen.contacts = surface.members;
+  seen.labels.assign(seen.contacts.size(), {});
+  return {seen, {}};
+}
+
+Attempt classify(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
+  if (leans(points, surface, config.max_slant_rad)) return {std::nullopt, "the surface leans: neither level nor upright"};
+  if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
+  auto contour = screen(points, surface, config);
+  return contour.observation ? contour : wall(points, surface, config);
+}
+
+void shift(Observation& observation, std::size_t by) {
+  for (auto& index : observation.contacts) index += by;
+}
+
+/// Looks for objects in points[begin, end), then in what is left of it before and after: one gesture may go from one wall to the next.
+void extract_range(std::span<const TracePoint> points, IndexRange range, double floor_z, const LandmarkConfig& config, int depth,
+                   Extraction& out) {
+  const auto part = points.subspan(range.begin, range.end - range.begin);
+  if (part.size() < 8) return;
+  // What is left beside an object is mostly the way to it; another object takes a while to draw.
+  if (depth > 0 && part.back().time_s - part.front().time_s < kMinLeftover) return;
+  const auto surface = find_surface(part, config);
+  if (!surface) {
+    if (depth == 0) out.reason = "the hand did not stay on one surface";
+    return;
+  }
+  auto attempt = classify(part, *surface, floor_z, config);
+  if (attempt.observation) {
+    shift(*attempt.observation, range.begin);
+    out.observations.push_back(std::move(*attempt.observation));
+  } else if (depth == 0) {
+    out.reason = attempt.reason;
+  }
+  if (depth >= 3) return;
+  const std::size_t first = range.begin + surface->members.front(), last = range.begin + surface->members.back();
+  extract_range(points, {range.begin, first}, floor_z, config, depth + 1, out);
+  extract_range(points, {last + 1, range.end}, floor_z, config, depth + 1, out);
+}
+
+}  // namespace
+
+Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config) {
+  Extraction out;
+  if (points.size() < 8) {
+    out.reason = "too few contacts";
+    return out;
+  }
+  extract_range(points, without_reach(points, config), floor_z, config, 0, out);
+  if (!out.observations.empty()) out.reason.clear();
+  return out;
+}
+
+}  // namespace kinemap

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/landmarks/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/landmarks/geometry.hpp"
+
+namespace kinemap {
+namespace {
+
+/// Speed of the hand at each point over a window of ±0.1 s, m/s.
+std::vector<double> speeds(std::span<const TracePoint> points) {
+  std::vector<double> v(points.size(), 0.0);
+  std::size_t a = 0, b = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    while (points[i].time_s - points[a].time_s > 0.1 && a + 1 < i) ++a;
+    while (b + 1 < points.size() && points[b].time_s - points[i].time_s < 0.1) ++b;
+    const double dt = points[b].time_s - points[a].time_s;
+    if (dt > 1e-3) v[i] = (points[b].p - points[a].p).norm() / dt;
+  }
+  return v;
+}
+
+/// Number of points at the front that belong to the reach. `time(i)` and `v(i)` count from the end that is looked at.
+template <class Time, class Speed>
+std::size_t reach_length(std::size_t n, const Time& time, const Speed& v, double threshold, double max_s) {
+  std::size_t last_fast = 0;
+  bool any = false;
+  for (std::size_t i = 0; i < n / 2 && time(i) <= max_s; ++i)
+    if (v(i) > threshold) last_fast = i, any = true;
+  if (!any) return 0;
+  // The reach ends where the hand comes to rest on the surface: the next minimum of its speed.
+  std::size_t i = last_fast + 1;
+  while (i + 1 < n / 2 && time(i) - time(last_fast) < 0.5 && v(i + 1) < v(i)) ++i;
+  return i;
+}
+
+/// The longest run in time of inliers, where a lift-off of up to 1.5 s or 0.3 m does not end it.
+std::vector<std::size_t> longest_run(std::span<const TracePoint> points, const std::vector<bool>& inlier) {
+  std::vector<std::size_t> best, run;
+  double best_length = -1.0, length = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!inlier[i]) continue;
+    if (!run.empty()) {
+      const double step = (points[i].p - points[run.back()].p).norm();
+      const bool goes_on = i == run.back() + 1 || (points[i].time_s - points[run.back()].time_s < 1.5 && step < 0.5);
+      if (!goes_on) run.clear(), length = 0.0;
+      else length += step;
+    }
+    run.push_back(i);
+    if (length > best_length) best_length = length, best = run;
+  }
+  return best;
+}
+
+double path_length(std::span<const TracePoint> points, const std::vector<std::size_t>& members) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < members.size(); ++k)
+    if (members[k] == members[k - 1] + 1) sum += (points[members[k]].p - points[members[k - 1]].p).norm();
+  return sum;
+}
+
+std::vector<Eigen::Vector2d> level(std::span<const TracePoint> points) {
+  std::vector<Eigen::Vector2d> out;
+  out.reserve(points.size());
+  for (const auto& point : points) out.emplace_back(point.p.head<2>());
+  return out;
+}
+
+std::optional<Surface> upright_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  const auto flat = level(points);
+  auto line = fit_line_robust(flat, config.plane_tolerance_m);
+  if (!line) return std::nullopt;
+  double lo = 0.0, hi = 0.0;
+  for (const auto& p : flat) {
+    if (std::abs(line->distance(p)) > config.plane_tolerance_m) continue;
+    lo = std::min(lo, line->along(p)), hi = std::max(hi, line->along(p));
+  }
+  const double tolerance = config.plane_tolerance_m + config.plane_tolerance_per_m * (hi - lo);
+  if (const auto wider = fit_line_robust(flat, tolerance)) line = wider;
+  std::vector<bool> inlier(points.size());
+  for (std::size_t i = 0; i < flat.size(); ++i) inlier[i] = std::abs(line->distance(flat[i])) <= tolerance;
+  Surface surface{Surface::Kind::Upright, {}, 0.0, longest_run(points, inlier)};
+  if (surface.members.size() < 3) return std::nullopt;
+  Eigen::Vector2d normal = line->normal();
+  double side = 0.0;
+  for (const std::size_t i : surface.members) side += line->distance(points[i].p_body.head<2>());
+  if (side < 0.0) normal = -normal;
+  surface.normal = {normal.x(), normal.y(), 0.0};
+  surface.offset = normal.dot(line->point);
+  return surface;
+}
+
+std::optional<Surface> level_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  // The height that most points share, by the same truncated quadratic score as the lines.
+  double best_z = 0.0, best_score = -1.0;
+  for (const auto& candidate : points) {
+    double score = 0.0;
+    for (const auto& point : points) {
+      const double r = (point.p.z() - candidate.p.z()) / config.plane_tolerance_m;
+      score += std::max(0.0, 1.0 - r * r);
+    }
+    if (score > best_score) best_score = score, best_z = candidate.p.z();
+  }
+  std::vector<bool> inlier(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    inlier[i] = std::abs(points[i].p.z() - best_z) <= config.plane_tolerance_m;
+  Surface surface{Surface::Kind::Level, Eigen::Vector3d::UnitZ(), 0.0, longest_run(points, inlier)};
+  if (surface.members.size() < 3) return std::nullopt;
+  std::vector<double> heights;
+  std::vector<Eigen::Vector2d> flat;
+  for (const std::size_t i : surface.members) heights.push_back(points[i].p.z()), flat.emplace_back(points[i].p.head<2>());
+  surface.offset = median(heights);
+  // A straight level line is no level surface: it may as well be a wall traced at one height.
+  const auto line = fit_line_robust(flat, config.plane_tolerance_m);
+  const auto off = std::count_if(flat.begin(), flat.end(), [&](const Eigen::Vector2d& p) {
+    return line && std::abs(line->distance(p)) > 2.0 * config.plane_tolerance_m;
+  });
+  if (static_cast<double>(off) < 0.1 * static_cast<double>(flat.size())) return std::nullopt;
+  return surface;
+}
+
+}  // namespace
+
+IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  const std::size_t n = points.size();
+  if (n < 8) return {0, n};
+  const auto v = speeds(points);
+  const double usual = median({v.begin() + static_cast<std::ptrdiff_t>(n / 5), v.end() - static_cast<std::ptrdiff_t>(n / 5)});
+  const double threshold = std::max(config.reach_speed_m_per_s, 2.0 * usual);
+  const double first = points.front().time_s, last = points.back().time_s;
+  const std::size_t front = reach_length(
+      n, [&](std::size_t i) { return points[i].time_s - first; }, [&](std::size_t i) { return v[i]; }, threshold,
+      config.reach_max_s);
+  const std::size_t back = reach_length(
+      n, [&](std::size_t i) { return last - points[n - 1 - i].time_s; }, [&](std::size_t i) { return v[n - 1 - i]; },
+      threshold, config.reach_max_s);
+  return {front, n - back};
+}
+
+std::optional<Surface> find_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  std::vector<std::size_t> all(points.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const double total = path_length(points, all);
+  const auto upright = upright_surface(points, config);
+  const auto flat = level_surface(points, config);
+  const double on_upright = upright ? path_length(points, upright->members) : 0.0;
+  const double on_level = flat ? path_length(points, flat->members) : 0.0;
+  const auto& best = on_level > on_upright ? flat : upright;
+  if (!best || std::max(on_level, on_upright) < 0.5 * total) return std::nullopt;
+  return best;
+}
+
+}  // namespace kinemap

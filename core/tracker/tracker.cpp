@@ -1,2 +1,94 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/tracker/tracker.hpp"
+
+#include <type_traits>
+#include <utility>
+
+#include "core/tracker/feet.hpp"
+#include "core/tracker/gesture.hpp"
+#include "core/tracker/key_poses.hpp"
+#include "core/tracker/sitting.hpp"
+#include "core/tracker/stance.hpp"
+#include "core/tracker/traces.hpp"
+
+namespace kinemap {
+
+class Tracker::Impl {
+ public:
+  explicit Impl(const TrackerConfig& config)
+      : ball_height_m_(config.stance.ball_height_m),
+        key_poses_(config.key_poses),
+        stance_(config.stance),
+        gesture_(config.gesture),
+        traces_(config.traces),
+        sitting_(config.sitting) {}
+
+  void step(const SuitFrame& frame, std::vector<Event>& events) {
+    ++stats_.frames;
+    if (frame.discontinuity) restart(events);
+    const auto soles = soles_of(frame, ball_height_m_);
+
+    put(sitting_.step(frame, soles), events);
+    put(traces_.step(frame.time_s, gesture_.step(frame)), events);
+    auto p_pelvis_stance = stance_.step(frame, soles);
+    if (sitting_.legs_sit()) p_pelvis_stance.reset();
+
+    const bool busy = traces_.open() || sitting_.open();
+    const bool now = traces_.starting() || sitting_.starting();
+    put(key_poses_.step(frame, {busy, now}, p_pelvis_stance), events);
+    if (traces_.open()) traces_.record(frame, key_poses_.latest());
+    sitting_.record(frame, key_poses_.latest());
+    count();
+  }
+
+  void finish(std::vector<Event>& events) {
+    put(sitting_.close(), events);
+    put(traces_.close(), events);
+    put(key_poses_.finish(), events);
+    count();
+  }
+
+  [[nodiscard]] const TrackerStats& stats() const { return stats_; }
+
+ private:
+  void restart(std::vector<Event>& events) {
+    put(sitting_.reset(), events);
+    put(traces_.close(), events);
+    gesture_.reset();
+    stance_.reset();
+  }
+
+  template <typename T>
+  void put(std::optional<T>&& event, std::vector<Event>& events) {
+    if (!event) return;
+    if constexpr (std::is_same_v<T, KeyPose>) ++stats_.key_poses;
+    if constexpr (std::is_same_v<T, Trace>) ++stats_.traces;
+    if constexpr (std::is_same_v<T, Sitting>) ++stats_.sittings;
+    events.emplace_back(std::move(*event));
+  }
+
+  void count() {
+    stats_.traces_rejected = traces_.rejected();
+    stats_.contacts_thinned_out = traces_.thinned_out();
+    stats_.path_m = key_poses_.total_path_m();
+  }
+
+  double ball_height_m_;
+  KeyPoseFold key_poses_;
+  StanceFold stance_;
+  GestureFold gesture_;
+  TraceFold traces_;
+  SittingFold sitting_;
+  TrackerStats stats_;
+};
+
+Tracker::Tracker(const TrackerConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+void Tracker::step(const SuitFrame& frame, std::vector<Event>& events) { impl_->step(frame, events); }
+void Tracker::finish(std::vector<Event>& events) { impl_->finish(events); }
+const TrackerStats& Tracker::stats() const { return impl_->stats(); }
+
+}  // namespace kinemap

@@ -19,11 +19,11 @@ struct TrackerStats {
   std::uint64_t traces_rejected = 0;  ///< gestures too short or without motion of the right hand
   std::uint64_t sittings = 0;
   std::uint64_t contacts_thinned_out = 0;  ///< contacts left out because a trace reached its limit
-  double path_m = 0.0;                ///< length of the level pelvis path
+  double path_m = 0.0;                     ///< length of the level pelvis path
 };
 
-/// A fold over frames: what the wearer does, as events. Deterministic; one call costs microseconds; memory is bounded by
-/// the longest trace allowed. Not thread-safe: one thread owns it.
+/// A fold over frames: what the wearer does, as events. Deterministic; one call costs microseconds; memory is bounded
+/// by the longest trace allowed. Not thread-safe: one thread owns it.
 class Tracker {
  public:
   explicit Tracker(const TrackerConfig& config);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace kinemap {
+
+/// First-order low-pass of a point's velocity (m/s) over stream time. The gain follows from the time between the
+/// samples, so the result does not depend on the frame rate or on lost frames. Zero until two samples are known.
+class SmoothedVelocity {
+ public:
+  explicit SmoothedVelocity(double time_constant_s) : time_constant_s_(time_constant_s) {}
+
+  void reset() { *this = SmoothedVelocity(time_constant_s_); }
+
+  const Eigen::Vector3d& step(double time_s, const Eigen::Vector3d& point) {
+    const double dt = time_s - time_s_;
+    if (started_ && dt <= 0.0) return velocity_;
+    if (started_) velocity_ += (1.0 - std::exp(-dt / time_constant_s_)) * ((point - point_) / dt - velocity_);
+    started_ = true;
+    time_s_ = time_s;
+    point_ = point;
+    return velocity_;
+  }
+
+ private:
+  double time_constant_s_;
+  bool started_ = false;
+  double time_s_ = 0.0;
+  Eigen::Vector3d point_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+};
+
+/// The state after this sample: `value` keeps an active state alive up to `off` and starts one only below `on` (on ≤
+/// off).
+inline bool below_with_hysteresis(bool active, double value, double on, double off) {
+  return value < (active ? off : on);
+}
+
+}  // namespace kinemap

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/tracker/traces.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinemap {
+
+std::optional<Trace> TraceFold::step(double time_s, bool gesture) {
+  std::optional<Trace> ended;
+  const double unseen_s = time_s - seen_s_;
+  if (open_ && unseen_s > (gesture ? config_.gap_s : config_.dropout_s)) ended = close();
+  if (!gesture) return ended;
+  if (!open_) {
+    open_ = true;
+    trace_.begin_s = time_s;
+  }
+  seen_s_ = time_s;
+  return ended;
+}
+
+void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
+  const Pose& T_odom_hand = frame[Segment::RightHand];
+  const Eigen::Vector3d p_hand_point(0, -config_.hand_point_m, 0);
+  if (trace_.contacts.empty()) {
+    first_wrist_ = T_odom_hand.p;
+  } else {
+    if (frame.time_s <= seen_s_) extent_m_ = std::max(extent_m_, (T_odom_hand.p - first_wrist_).norm());
+    const double moved =
+        std::max((T_odom_hand.p - kept_.p).norm(), (T_odom_hand * p_hand_point - kept_ * p_hand_point).norm());
+    if (moved < config_.spacing_m && frame.time_s - kept_s_ < config_.spacing_s) return;
+    if (trace_.contacts.size() >= config_.max_contacts) {
+      ++thinned_out_;
+      return;
+    }
+  }
+  trace_.contacts.push_back({frame.time_s, latest.id, latest.T_odom_pelvis.inverse() * T_odom_hand});
+  kept_ = T_odom_hand;
+  kept_s_ = frame.time_s;
+}
+
+std::optional<Trace> TraceFold::close() {
+  if (!open_) return std::nullopt;
+  open_ = false;
+  Trace trace = std::exchange(trace_, {});
+  const double extent_m = std::exchange(extent_m_, 0.0);
+  trace.end_s = seen_s_;
+  // What the hand did after the gesture was last seen is not part of it.
+  while (!trace.contacts.empty() && trace.contacts.back().time_s > seen_s_) trace.contacts.pop_back();
+  if (trace.contacts.empty() || trace.end_s - trace.begin_s < config_.min_duration_s ||
+      extent_m < config_.min_extent_m) {
+    ++rejected_;
+    return std::nullopt;
+  }
+  return trace;
+}
+
+}  // namespace kinemap

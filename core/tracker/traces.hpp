@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/body.hpp"
+#include "core/events.hpp"
+#include "core/tracker/config.hpp"
+
+namespace kinemap {
+
+/// Records the right hand while the gesture lasts. For each frame: step(), then record() if open(). Memory is bounded
+/// by max_contacts.
+class TraceFold {
+ public:
+  explicit TraceFold(const TrackerConfig::Traces& config) : config_(config) {}
+
+  /// Opens, keeps or ends the trace; returns one that has just ended and is long enough in time and space.
+  std::optional<Trace> step(double time_s, bool gesture);
+  /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
+  /// frame.
+  void record(const SuitFrame& frame, const KeyPose& latest);
+  /// Ends an open trace (end of the stream, discontinuity).
+  std::optional<Trace> close();
+
+  [[nodiscard]] bool open() const { return open_; }
+  /// Open, and nothing has been recorded yet: the first contact wants a key pose of its own.
+  [[nodiscard]] bool starting() const { return open_ && trace_.contacts.empty(); }
+  [[nodiscard]] std::uint64_t rejected() const { return rejected_; }
+  [[nodiscard]] std::uint64_t thinned_out() const { return thinned_out_; }
+
+ private:
+  TrackerConfig::Traces config_;
+  bool open_ = false;
+  Trace trace_;
+  double seen_s_ = 0.0;    ///< last frame with the gesture
+  double extent_m_ = 0.0;  ///< farthest distance of the wrist from the first contact while the gesture was seen
+  Eigen::Vector3d first_wrist_ = Eigen::Vector3d::Zero();  ///< odom frame
+  Pose kept_;                                              ///< T_odom_hand of the last kept contact
+  double kept_s_ = 0.0;
+  std::uint64_t rejected_ = 0;
+  std::uint64_t thinned_out_ = 0;
+};
+
+}  // namespace kinemap

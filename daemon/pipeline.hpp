@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <variant>
+
+#include "core/body.hpp"
+#include "core/events.hpp"
+#include "core/map.hpp"
+#include "core/mapper/mapper.hpp"
+#include "core/tracker/tracker.hpp"
+#include "daemon/latest.hpp"
+#include "daemon/ring.hpp"
+
+namespace kinemap {
+
+/// Where the wearer is now, in the suit's drifting frame: T_odom_pelvis. The map's T_map_odom corrects it.
+struct LivePose {
+  bool known = false;  ///< false until the first frame
+  double time_s = 0.0;
+  std::array<double, 3> position_m{};             ///< odom frame
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< w x y z
+};
+
+/// Something the wearer did, for those who listen to the stream of events.
+struct Notice {
+  enum class Kind : std::uint8_t { Trace, Sitting } kind = Kind::Trace;
+  double begin_s = 0.0;
+  double end_s = 0.0;
+  std::uint64_t contacts = 0;  ///< of a trace
+  double seat_height_m = 0.0;  ///< of a sitting
+};
+
+struct SolverStats {
+  std::uint64_t messages = 0;
+  double longest_s = 0.0;  ///< the longest time one message took
+  double busy_s = 0.0;     ///< all of them together
+};
+
+struct PipelineStats {
+  TrackerStats tracker;
+  SolverStats solver;
+  RingStats frames, events, notices;
+  std::uint64_t events_held_back = 0;  ///< events that had to wait because the solver was that far behind
+};
+
+struct RingSizes {
+  std::size_t frames = 1024;   ///< 4 s at 240 Hz, 1.6 MB
+  std::size_t events = 16384;  ///< more than half an hour of walking
+  std::size_t notices = 256;
+};
+
+/// The two threads between the suit and the map, and the queues between them.
+///
+/// What is lost when somebody is too slow, and why just that: a frame may be lost (the suit's poses are absolute, the
+/// next frame says all that the lost one said about the drift), an event may not (key poses are a chain, and traces
+/// refer to them). So:
+/// - detection behind → `frames_` fills, the newest frames are refused and counted; the tracker sees a gap as it sees
+/// one of the network;
+/// - solver behind → `events_` fills (half an hour); then detection takes no frame until there is room, which leads to
+/// the case before;
+/// - nobody listens to notices → they are refused and counted.
+/// Memory is bounded in each case and nothing on the way from the network ever waits for the solver or for a client.
+class Pipeline {
+ public:
+  Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes = {});
+  ~Pipeline();
+  Pipeline(const Pipeline&) = delete;
+  Pipeline& operator=(const Pipeline&) = delete;
+
+  /// Network thread only; never waits. False, and counted, when the ring is full. Wearer information must be offered
+  /// again then.
+  bool offer(const SuitFrame& frame) { return frames_.push(frame); }
+  bool offer(const WearerInfo& wearer) { return frames_.push(wearer); }
+
+  /// Any thread. The map is never null.
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
+  [[nodiscard]] LivePose live_pose() const { return live_pose_.get(); }
+  [[nodiscard]] PipelineStats stats() const;
+
+  /// One listener's thread only.
+  std::optional<Notice> take_notice() { return notices_.pop(); }
+
+ private:
+  using SuitMessage = std::variant<SuitFrame, WearerInfo>;
+  using MapperMessage = std::variant<Event, WearerInfo>;
+
+  void detect(const std::stop_token& stop);
+  void solve(const std::stop_token& stop);
+  void take_frame(const SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
+  void send(MapperMessage message, const std::stop_token& stop);
+  void take_message(const MapperMessage& message);
+  void notify(const Event& event);
+
+  Ring<SuitMessage> frames_;  // network → detection
+  Ring<std::shared_ptr<const MapperMessage>>
+      events_;                       // detection → solver; by pointer: a trace is not copied on the fast thread
+  Ring<Notice> notices_;             // solver → the one listener
+  Latest<MapSnapshot> map_;          // solver → everyone who asks
+  LatestValue<LivePose> live_pose_;  // detection → everyone who asks
+  LatestValue<TrackerStats> tracker_stats_;         // detection → everyone who asks
+  LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
+  std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks
+  Tracker tracker_;                                 // detection thread only
+  Mapper mapper_;                                   // solver thread only
+  std::jthread solver_, detection_;                 // last: joined first
+};
+
+}  // namespace kinemap

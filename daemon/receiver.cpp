@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/receiver.hpp"
+
+#include <pthread.h>
+
+#include <thread>
+#include <utility>
+
+#include "daemon/suit_sockets.hpp"
+
+namespace kinemap {
+
+class Receiver::Impl {
+ public:
+  Impl(const AssemblerConfig& stream, SuitSink sink) : intake_(stream, std::move(sink)) {}
+  ~Impl() { io_.stop(); }
+
+  /// Binds and starts to listen; the thread begins with `run`.
+  ErrorCode bind_udp(const net::ip::address& address, std::uint16_t port, int receive_buffer_bytes) {
+    net::ip::udp::socket socket(io_);
+    const net::ip::udp::endpoint endpoint(address, port);
+    ErrorCode error;
+    socket.open(endpoint.protocol(), error);
+    if (!error) socket.bind(endpoint, error);
+    if (error) return error;
+    set_receive_buffer(socket, receive_buffer_bytes);
+    port_ = socket.local_endpoint().port();
+    udp_ = std::make_unique<UdpSource>(std::move(socket), intake_);
+    udp_->start();
+    return {};
+  }
+
+  ErrorCode bind_tcp(const net::ip::address& address, std::uint16_t port) {
+    net::ip::tcp::acceptor acceptor(io_);
+    const net::ip::tcp::endpoint endpoint(address, port);
+    ErrorCode error;
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
+    if (error) return error;
+    port_ = acceptor.local_endpoint().port();
+    tcp_ = std::make_unique<TcpSource>(std::move(acceptor), intake_);
+    tcp_->start();
+    return {};
+  }
+
+  void run() {
+    thread_ = std::jthread([this] { io_.run(); });
+    pthread_setname_np(thread_.native_handle(), "suit");
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] ReceiverState state() const { return intake_.state(); }
+
+ private:
+  net::io_context io_{1};
+  Intake intake_;                   // the thread takes, everyone may ask for its state
+  std::unique_ptr<UdpSource> udp_;  // the thread only
+  std::unique_ptr<TcpSource> tcp_;  // the thread only
+  std::uint16_t port_ = 0;
+  std::jthread thread_;  // last: joined first
+};
+
+Started<Receiver> Receiver::open(const Config::Suit& suit, const AssemblerConfig& stream, SuitSink sink) {
+  const bool tcp = suit.transport == "tcp";
+  const Binding binding{tcp ? "TCP" : "UDP", suit.address, suit.port, "suit.port", "--suit-port"};
+  ErrorCode error;
+  const auto address = net::ip::make_address(suit.address, error);
+  auto impl = std::make_unique<Impl>(stream, std::move(sink));
+  if (!error)
+    error = tcp ? impl->bind_tcp(address, suit.port) : impl->bind_udp(address, suit.port, suit.receive_buffer_bytes);
+  if (error) return bind_error(binding, error);
+  impl->run();
+  return std::unique_ptr<Receiver>(new Receiver(std::move(impl)));
+}
+
+Receiver::Receiver(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Receiver::~Receiver() = default;
+
+std::uint16_t Receiver::port() const { return impl_->port(); }
+ReceiverState Receiver::state() const { return impl_->state(); }
+
+}  // namespace kinemap

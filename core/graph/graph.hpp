@@ -8,8 +8,9 @@
 
 #include "core/pose.hpp"
 
-/// The estimation problem as plain values: variables with their current values, and factors that refer to them by index.
-/// core/graph/optimizer.hpp solves it, core/graph/marginals.hpp says how certain the solution is. Nothing here knows Ceres.
+/// The estimation problem as plain values: variables with their current values, and factors that refer to them by
+/// index. core/graph/optimizer.hpp solves it, core/graph/marginals.hpp says how certain the solution is. Nothing here
+/// knows Ceres.
 ///
 /// Tangent of a pose: right perturbation δ = [δp; δθ] (6), T ⊞ δ = {p + q·δp, q·exp(δθ)}; metres, radians.
 namespace kinemap::graph {
@@ -20,16 +21,19 @@ enum class LandmarkKind : std::uint8_t { Wall, Table, Screen, Seat };
 
 /// A landmark with the fewest numbers its nature leaves free (`dimension(kind)` of `x` are used):
 /// - Wall (2): heading ψ of the normal, offset d; n = (cos ψ, sin ψ, 0), n·(p − anchor) = d.
-/// - Table (6): centre x, y, z; heading of the first side; length along it (u), width across it (v). Local axes u level along the
+/// - Table (6): centre x, y, z; heading of the first side; length along it (u), width across it (v). Local axes u level
+/// along the
 ///   heading, v level to its left, w up.
-/// - Screen (7): centre x, y, z; heading ψ of the normal; width (u), height (v); tilt τ. Local axes w = normal, tilted up from the level by
+/// - Screen (7): centre x, y, z; heading ψ of the normal; width (u), height (v); tilt τ. Local axes w = normal, tilted
+/// up from the level by
 ///   τ; u = level, ẑ × n; v = w × u, up in the plane.
 /// - Seat (4): x, y, z; heading where the sitter faces.
 struct Landmark {
   LandmarkKind kind = LandmarkKind::Wall;
   std::array<double, 7> x{};
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< walls only: fixed point near the contacts, keeps offset and heading apart
-  bool active = true;                                ///< inactive landmarks and their factors are left out of the problem
+  Eigen::Vector3d anchor =
+      Eigen::Vector3d::Zero();  ///< walls only: fixed point near the contacts, keeps offset and heading apart
+  bool active = true;           ///< inactive landmarks and their factors are left out of the problem
 };
 constexpr int dimension(LandmarkKind kind) {
   constexpr int sizes[] = {2, 6, 7, 4};
@@ -50,7 +54,8 @@ struct Loss {
   double scale = 1.0;
 };
 
-/// Relative motion between two poses (paper eq. 1, 2): e = [R_ij^T (T_i^-1 T_j).p − …; log(q_ij^-1 q_i^-1 q_j)], whitened.
+/// Relative motion between two poses (paper eq. 1, 2): e = [R_ij^T (T_i^-1 T_j).p − …; log(q_ij^-1 q_i^-1 q_j)],
+/// whitened.
 struct BetweenFactor {
   std::size_t i = 0, j = 0;
   Pose T_i_j;
@@ -58,7 +63,8 @@ struct BetweenFactor {
   Loss loss;
 };
 
-/// Gravity: the direction up, seen in the pose's frame (unit). Residual: the level part of R_map_i·up, over sigma (rad).
+/// Gravity: the direction up, seen in the pose's frame (unit). Residual: the level part of R_map_i·up, over sigma
+/// (rad).
 struct GravityFactor {
   std::size_t i = 0;
   Eigen::Vector3d up;
@@ -84,9 +90,10 @@ struct PriorFactor {
 /// Side of a rectangle: the line u = ∓x_u/2 or v = ∓x_v/2 of its plane.
 enum class Edge : std::uint8_t { None, MinusU, PlusU, MinusV, PlusV };
 
-/// One hand contact: the touching point p = T_map_i · T_i_hand · p_hand lies on the landmark's plane (paper eq. 4) and, for
-/// rectangles, on the side it was drawn along; `corner` names the second side where the contact is a corner (end of an open contour).
-/// Residuals: [plane distance / sigma_plane, edge distance / sigma_edge, corner distance / sigma_corner], those that apply.
+/// One hand contact: the touching point p = T_map_i · T_i_hand · p_hand lies on the landmark's plane (paper eq. 4) and,
+/// for rectangles, on the side it was drawn along; `corner` names the second side where the contact is a corner (end of
+/// an open contour). Residuals: [plane distance / sigma_plane, edge distance / sigma_edge, corner distance /
+/// sigma_corner], those that apply.
 struct ContactFactor {
   std::size_t i = 0;
   std::size_t landmark = 0;
@@ -111,7 +118,8 @@ struct SeatFactor {
   Loss loss;
 };
 
-/// Two landmarks' headings differ by a multiple of 90°: wrap(ψ_b − ψ_a − offset) / sigma, under a loss that lets an oblique wall go.
+/// Two landmarks' headings differ by a multiple of 90°: wrap(ψ_b − ψ_a − offset) / sigma, under a loss that lets an
+/// oblique wall go.
 struct ParallelFactor {
   std::size_t a = 0, b = 0;
   double offset_rad = 0.0;
@@ -142,7 +150,8 @@ struct Graph {
   std::vector<LandmarkPrior> landmark_priors;
 };
 
-/// Local frame of a table or screen (`T_map_rectangle`, axes u, v, w as documented at Landmark) or seat (level, +x = heading).
+/// Local frame of a table or screen (`T_map_rectangle`, axes u, v, w as documented at Landmark) or seat (level, +x =
+/// heading).
 Pose landmark_pose(const Landmark& landmark);
 
 /// Unwhitened contact errors, m: distance to the plane (along w), to `edge` and to `corner` (0 where None).

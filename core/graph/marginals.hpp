@@ -16,8 +16,9 @@ struct Variable {
   std::size_t index = 0;
 };
 
-/// Joint marginal covariances at the graph's current values, from one sparse Cholesky factorisation of JᵀJ (robust weights
-/// included). Blocks are in the variables' tangent: poses 6, landmarks `dimension(kind)`, touching points 3 (0 columns when fixed).
+/// Joint marginal covariances at the graph's current values, from one sparse Cholesky factorisation of JᵀJ (robust
+/// weights included). Blocks are in the variables' tangent: poses 6, landmarks `dimension(kind)`, touching points 3 (0
+/// columns when fixed).
 class Marginals {
  public:
   /// nullopt when the system is singular (a variable without factors, no gauge).

@@ -9,9 +9,10 @@ namespace kinemap::graph {
 
 struct OptimizerOptions {
   int max_iterations = 20;
-  double time_budget_s = 0.0;      ///< 0: none. A budget makes results depend on the machine's speed; batch runs use none.
+  double time_budget_s = 0.0;  ///< 0: none. A budget makes results depend on the machine's speed; batch runs use none.
   double function_tolerance = 1e-5;
-  double initial_trust_region_radius = 1e12;  ///< nearly undamped Gauss-Newton; one retry with 1e4 when that is not usable
+  double initial_trust_region_radius =
+      1e12;                         ///< nearly undamped Gauss-Newton; one retry with 1e4 when that is not usable
   std::size_t first_free_pose = 0;  ///< poses before it are held constant
 };
 
@@ -26,9 +27,9 @@ struct Verdict {
   std::string message;
 };
 
-/// Minimises the robust cost of all factors over poses, active landmarks and free touching points, in place, warm-started
-/// from the values in `graph` (Ceres, analytic Jacobians, SPARSE_NORMAL_CHOLESKY). On an unusable outcome `graph` is untouched.
-/// Without any PriorFactor pose 0 is held constant (gauge).
+/// Minimises the robust cost of all factors over poses, active landmarks and free touching points, in place,
+/// warm-started from the values in `graph` (Ceres, analytic Jacobians, SPARSE_NORMAL_CHOLESKY). On an unusable outcome
+/// `graph` is untouched. Without any PriorFactor pose 0 is held constant (gauge).
 [[nodiscard]] Verdict optimize(Graph& graph, const OptimizerOptions& options);
 
 /// ½ Σ ρ(‖r‖²) at the current values.

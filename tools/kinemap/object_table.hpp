@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/map.hpp"
+
+namespace kinemap::cli {
+
+/// The objects as lines of text for people: id, type, size, centre, heading, uncertainty, observations, functions.
+std::string object_table(const MapSnapshot& map);
+
+/// One line: "12 objects: 4 walls, 2 tables, …; 1 room of 33.9 m²".
+std::string object_counts(const MapSnapshot& map);
+
+}  // namespace kinemap::cli

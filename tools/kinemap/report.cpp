@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <numeric>
+
+#include "tools/kinemap/evaluation.hpp"
+
+namespace kinemap::eval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0; }
+
+ClassCounts& operator+=(ClassCounts& a, const ClassCounts& b) {
+  a.truth += b.truth;
+  a.found += b.found;
+  a.estimated += b.estimated;
+  a.duplicates += b.duplicates;
+  return a;
+}
+
+Json spread_json(const Spread& spread, double factor = 1.0) {
+  Json json = {{"n", spread.n}};
+  if (spread.n == 0) return json;
+  for (const auto& [key, value] : {std::pair{"mean", spread.mean}, std::pair{"std", spread.std},
+                                   std::pair{"median", spread.median}, std::pair{"max", spread.max}})
+    json[key] = rounded(factor * value);
+  return json;
+}
+
+Json counts_json(const ClassCounts& counts) {
+  return {{"truth", counts.truth},
+          {"found", counts.found},
+          {"estimated", counts.estimated},
+          {"duplicates", counts.duplicates},
+          {"recall", rounded(recall(counts))},
+          {"precision", rounded(precision(counts))}};
+}
+
+std::string text(const char* format, auto... values) {
+  char buffer[160];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+std::string spread_text(const Spread& spread, const char* format, double factor = 1.0) {
+  return spread.n ? text(format, factor * spread.mean, factor * spread.std) : "–";
+}
+
+std::string class_row(const char* name, const Report::PerClass& row, bool edges) {
+  const ClassCounts& counts = row.counts;
+  return "| " + std::string(name) + " | " + (edges ? spread_text(row.mape_percent, "%.1f ± %.1f") : "–") + " | " +
+         (edges && row.mape_percent.n ? text("%.1f", row.mape_percent.median) : "–") + " | " +
+         text("%zu / %zu", counts.found, counts.truth) + " | " + text("%.1f", 100 * recall(counts)) + " | " +
+         text("%.1f", 100 * precision(counts)) + " | " + text("%zu", counts.duplicates) + " | " +
+         spread_text(row.level_error_m, "%.2f ± %.2f") + " | " +
+         spread_text(row.heading_error_rad, "%.1f ± %.1f", kDegrees) + " |\n";
+}
+
+}  // namespace
+
+Spread spread_of(std::vector<double> values) {
+  Spread spread;
+  spread.n = values.size();
+  if (values.empty()) return spread;
+  const double n = static_cast<double>(values.size());
+  spread.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double sum = 0.0;
+  for (const double value : values) sum += (value - spread.mean) * (value - spread.mean);
+  spread.std = values.size() > 1 ? std::sqrt(sum / (n - 1)) : 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  spread.median = values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+  spread.max = values.back();
+  return spread;
+}
+
+double recall(const ClassCounts& counts) {
+  return counts.truth ? static_cast<double>(counts.found) / static_cast<double>(counts.truth) : 1.0;
+}
+
+double precision(const ClassCounts& counts) {
+  return counts.estimated ? static_cast<double>(counts.found) / static_cast<double>(counts.estimated) : 1.0;
+}
+
+Report summarise(const std::vector<Evaluation>& sessions) {
+  Report report;
+  report.sessions = sessions.size();
+  std::array<std::vector<double>, kClassCount> mape, level, heading;
+  std::vector<double> open_loop, optimised;
+  for (const Evaluation& session : sessions) {
+    for (std::size_t c = 0; c < kClassCount; ++c) {
+      report.classes[c].counts += session.counts[c];
+      report.total += session.counts[c];
+    }
+    for (const Match& match : session.matches) {
+      const auto c = static_cast<std::size_t>(match.klass);
+      if (!match.edge_errors_percent.empty()) mape[c].push_back(match.mape_percent());
+      level[c].push_back(match.level_error_m);
+      heading[c].push_back(match.heading_error_rad);
+    }
+    open_loop.push_back(session.rmse_open_loop_m);
+    optimised.push_back(session.rmse_optimised_m);
+  }
+  for (std::size_t c = 0; c < kClassCount; ++c) {
+    report.classes[c].mape_percent = spread_of(mape[c]);
+    report.classes[c].level_error_m = spread_of(level[c]);
+    report.classes[c].heading_error_rad = spread_of(heading[c]);
+  }
+  report.rmse_open_loop_m = spread_of(open_loop);
+  report.rmse_optimised_m = spread_of(optimised);
+  return report;
+}
+
+Json to_json(const Report& report) {
+  Json json = {{"sessions", report.sessions}};
+  for (std::size_t c = 0; c < kClassCount; ++c) {
+    const Report::PerClass& row = report.classes[c];
+    Json& entry = json["classes"][to_string(static_cast<Class>(c))] = counts_json(row.counts);
+    if (static_cast<Class>(c) != Class::Chair) entry["mape_percent"] = spread_json(row.mape_percent);
+    entry["position_error_m"] = spread_json(row.level_error_m);
+    entry["heading_error_deg"] = spread_json(row.heading_error_rad, kDegrees);
+  }
+  json["all"] = counts_json(report.total);
+  json["trajectory"] = {{"rmse_open_loop_m", spread_json(report.rmse_open_loop_m)},
+                        {"rmse_optimised_m", spread_json(report.rmse_optimised_m)}};
+  return json;
+}
+
+Json to_json(const Evaluation& evaluation) {
+  Json json = {{"poses", evaluation.poses},
+               {"rmse_open_loop_m", rounded(evaluation.rmse_open_loop_m)},
+               {"rmse_optimised_m", rounded(evaluation.rmse_optimised_m)},
+               {"matches", Json::array()}};
+  for (const Match& match : evaluation.matches) {
+    Json row = {{"truth_id", match.truth_id}, {"object_id", match.object_id}, {"class", to_string(match.klass)}};
+    if (!match.edge_errors_percent.empty()) {
+      Json& edges = row["edge_errors_percent"] = Json::array();
+      for (const double error : match.edge_errors_percent) edges.push_back(rounded(error));
+    }
+    row["position_error_m"] = rounded(match.level_error_m);
+    row["height_error_m"] = rounded(match.height_error_m);
+    row["heading_error_deg"] = rounded(kDegrees * match.heading_error_rad);
+    json["matches"].push_back(std::move(row));
+  }
+  json["missed"] = evaluation.missed;
+  json["spurious"] = evaluation.spurious;
+  json["duplicates"] = evaluation.duplicates;
+  return json;
+}
+
+std::string to_markdown(const Report& report) {
+  std::string table =
+      "| class | edge error % | median % | found | recall % | precision % | duplicates | position m | heading ° |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (std::size_t c = 0; c < kClassCount; ++c) {
+    const auto klass = static_cast<Class>(c);
+    table += class_row(to_string(klass), report.classes[c], klass != Class::Chair);
+  }
+  Report::PerClass all;
+  all.counts = report.total;
+  table += class_row("all", all, false);
+  table += "\nTrajectory RMSE: open loop " + spread_text(report.rmse_open_loop_m, "%.3f ± %.3f m") + ", optimised " +
+           spread_text(report.rmse_optimised_m, "%.3f ± %.3f m") + text(" (%zu sessions)\n", report.sessions);
+  return table;
+}
+
+}  // namespace kinemap::eval

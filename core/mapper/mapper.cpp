@@ -1,2 +1,107 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mapper/mapper.hpp"
+
+#include <utility>
+
+#include "core/mapper/closure.hpp"
+#include "core/mapper/observe.hpp"
+#include "core/mapper/odometry.hpp"
+#include "core/mapper/publish.hpp"
+#include "core/mapper/walls.hpp"
+
+namespace kinemap {
+
+class Mapper::Impl {
+ public:
+  explicit Impl(const MapperConfig& config) : config_(config), odometry_(config.odometry), closer_(config) {
+    state_.graph.touch_points.push_back(touch_point(config.hand, {}, std::nullopt));
+  }
+
+  void set_wearer(const WearerInfo& wearer) { wearer_ = wearer; }
+
+  bool add(const KeyPose& key_pose) {
+    odometry_.add(key_pose, state_.graph);
+    time_s_ = key_pose.time_s;
+    return false;
+  }
+
+  bool add(const Trace& trace) {
+    time_s_ = trace.end_s;
+    state_.graph.touch_points[kTouch] = touch_point(config_.hand, wearer_, trace.stature_m);
+    const auto points = trace_points(trace, state_.graph, kTouch);
+    const auto extraction = extract_landmarks(points, odometry_.floor_z(), config_.landmarks);
+    if (extraction.observations.empty()) unresolved_.push_back({trace.begin_s, trace.end_s, extraction.reason});
+    for (const auto& observation : extraction.observations)
+      associate(add_observation(observation, trace, points, kTouch, odometry_.floor_z(), config_, state_));
+    publish();
+    return true;
+  }
+
+  bool add(const Sitting& sitting) {
+    time_s_ = sitting.end_s;
+    associate(add_seat(sitting, odometry_.floor_z(), config_, state_));
+    publish();
+    return true;
+  }
+
+  void finish() {
+    if (state_.graph.poses.empty()) return;
+    closer_.optimise(state_, config_.solver.final_iterations);
+    if (closer_.reconsider(state_)) closer_.optimise(state_, config_.solver.final_iterations);
+    publish();
+  }
+
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
+  [[nodiscard]] const graph::Graph& graph() const { return state_.graph; }
+
+ private:
+  static constexpr std::size_t kTouch = 0;
+
+  void associate(std::size_t newcomer) {
+    if (closer_.resolve(state_, newcomer)) closer_.reconsider(state_);
+  }
+
+  void publish() {
+    auto map = std::make_shared<MapSnapshot>();
+    map->revision = snapshot_->revision + 1;
+    map->time_s = time_s_;
+    const auto walls = cut_walls(state_, config_.walls);
+    const auto marginals = graph::Marginals::compute(state_.graph);
+    map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
+    map->rooms = find_rooms(state_, walls, config_.walls);
+    map->unresolved = unresolved_;
+    const auto& key_poses = odometry_.key_poses();
+    map->trajectory.reserve(key_poses.size());
+    for (const auto& key_pose : key_poses)
+      map->trajectory.push_back({key_pose.id, key_pose.time_s, state_.graph.poses[key_pose.id], key_pose.T_odom_pelvis});
+    if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();
+    map->graph = state_.summary;
+    map->graph.key_poses = key_poses.size();
+    map->graph.landmarks = map->objects.size();
+    snapshot_ = std::move(map);
+  }
+
+  MapperConfig config_;
+  WearerInfo wearer_;
+  Odometry odometry_;
+  LoopCloser closer_;
+  MapState state_;
+  std::vector<UnresolvedTrace> unresolved_;
+  double time_s_ = 0.0;
+  std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<MapSnapshot>();
+};
+
+Mapper::Mapper(const MapperConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Mapper::~Mapper() = default;
+Mapper::Mapper(Mapper&&) noexcept = default;
+Mapper& Mapper::operator=(Mapper&&) noexcept = default;
+
+void Mapper::set_wearer(const WearerInfo& wearer) { impl_->set_wearer(wearer); }
+bool Mapper::add(const Event& event) {
+  return std::visit([this](const auto& e) { return impl_->add(e); }, event);
+}
+void Mapper::finish() { impl_->finish(); }
+std::shared_ptr<const MapSnapshot> Mapper::snapshot() const { return impl_->snapshot(); }
+const graph::Graph& Mapper::graph() const { return impl_->graph(); }
+
+}  // namespace kinemap

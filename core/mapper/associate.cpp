@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapper/associate.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "core/mapper/wall_frame.hpp"
+
+namespace kinemap {
+namespace {
+
+using graph::Edge;
+using graph::Landmark;
+using graph::LandmarkKind;
+
+constexpr double kOnPlane = 0.25;        // m: contacts farther from their wall do not speak of its extent
+constexpr double kMaxTurn = 0.8;         // rad: objects are not mistaken for ones that stand crosswise
+constexpr double kAlongGap = 0.3;        // m: two stretches of one wall may miss each other by so much
+constexpr double kHalfPi = std::numbers::pi / 2.0;
+
+double squared(double x) { return x * x; }
+
+/// What the newcomer `a` differs from landmark `b` by, as a function of their numbers, so that its Jacobian can be had numerically.
+struct Difference {
+  std::function<Eigen::VectorXd(const Landmark&, const Landmark&)> of;
+  Eigen::VectorXd noise;  ///< standard deviations beyond the graph's covariance
+  int quarter_turns = 0;
+};
+
+Difference wall_difference(const MapState& state, std::size_t a, const MapperConfig::Association& config) {
+  // At the middle of the newcomer's own contacts, where its offset and heading are least correlated.
+  const auto interval = contact_interval(state, a).value_or(Interval{});
+  const double half = std::max(0.3, 0.5 * (interval.hi - interval.lo));
+  const double middle = 0.5 * (interval.lo + interval.hi);
+  Difference d;
+  d.of = [middle](const Landmark& x, const Landmark& y) {
+    const Eigen::Vector3d p = WallFrame(x).point(middle);
+    return Eigen::VectorXd(Eigen::Vector2d(WallFrame(y).distance(p), wrap_angle(x.x[0] - y.x[0])));
+  };
+  d.noise = Eigen::Vector2d(config.position_sigma_m, std::max(config.heading_sigma_rad, config.position_sigma_m / half));
+  return d;
+}
+
+/// The four ways round in which a table's axes may have been named; the one that turns it least.
+int quarter_turns(double heading_a, double heading_b) {
+  return static_cast<int>(std::lround(wrap_angle(heading_a - heading_b) / kHalfPi)) & 3;
+}
+
+Difference table_difference(const Landmark& a, const Landmark& b, const MapperConfig::Association& config) {
+  const int turns = quarter_turns(a.x[3], b.x[3]);
+  Difference d;
+  d.quarter_turns = turns;
+  d.of = [turns](const Landmark& x, const Landmark& y) {
+    Eigen::VectorXd e(6);
+    const bool swapped = turns % 2 != 0;
+    e << x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3] - turns * kHalfPi),
+        x.x[swapped ? 5 : 4] - y.x[4], x.x[swapped ? 4 : 5] - y.x[5];
+    return e;
+  };
+  d.noise.resize(6);
+  d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, config.heading_sigma_rad,
+      config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
+  return d;
+}
+
+Difference screen_difference(const Landmark& b, const MapperConfig::Association& config) {
+  Difference d;
+  d.of = [](const Landmark& x, const Landmark& y) {
+    Eigen::VectorXd e(6);
+    e << x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3]), x.x[4] - y.x[4], x.x[5] - y.x[5];
+    return e;
+  };
+  d.noise.resize(6);
+  const double heading = std::max(config.heading_sigma_rad, config.position_sigma_m / std::max(0.3, b.x[4]));
+  d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, heading,
+      config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
+  return d;
+}
+
+Difference seat_difference(const MapperConfig::Association& config) {
+  Difference d;
+  d.of = [](const Landmark& x, const Landmark& y) {
+    return Eigen::VectorXd(
+        Eigen::Vector4d(x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3])));
+  };
+  d.noise = Eigen::Vector4d(config.position_sigma_m, config.position_sigma_m, 0.5 * config.position_sigma_m, 0.2);
+  return d;
+}
+
+Difference difference(const MapState& state, std::size_t a, std::size_t b, const MapperConfig::Association& config) {
+  const auto& landmarks = state.graph.landmarks;
+  switch (landmarks[a].kind) {
+    case LandmarkKind::Wall: return wall_difference(state, a, config);
+    case LandmarkKind::Table: return table_difference(landmarks[a], landmarks[b], config);
+    case LandmarkKind::Screen: return screen_difference(landmarks[b], config);
+    case LandmarkKind::Seat: return seat_difference(config);
+  }
+  return {};
+}
+
+/// Central differences of `d.of` in the numbers of both landmarks, side by side.
+Eigen::MatrixXd jacobian(const Difference& d, const Landmark& a, const Landmark& b) {
+  constexpr double kStep = 1e-6;
+  const int na = graph::dimension(a.kind), nb = graph::dimension(b.kind);
+  Eigen::MatrixXd j(d.noise.size(), na + nb);
+  for (int k = 0; k < na + nb; ++k) {
+    Landmark a0 = a, a1 = a, b0 = b, b1 = b;
+    const auto n = static_cast<std::size_t>(k < na ? k : k - na);
+    (k < na ? a0 : b0).x[n] -= kStep;
+    (k < na ? a1 : b1).x[n] += kStep;
+    j.col(k) = (d.of(a1, b1) - d.of(a0, b0)) / (2.0 * kStep);
+  }
+  return j;
+}
+
+std::optional<KeyPoseId> last_visit(const MapState& state, std::size_t landmark) {
+  for (std::size_t k = state.observations.size(); k-- > 0;)
+    if (state.observations[k].landmark == landmark) return state.observations[k].key_pose;
+  return std::nullopt;
+}
+
+/// Variance of the way from pose j to pose i along the level unit vector `axis`, m².
+double variance_along(const MapState& state, const graph::Marginals& marginals, KeyPoseId i, KeyPoseId j,
+                      const Eigen::Vector3d& axis) {
+  const std::array<graph::Variable, 2> poses{graph::Variable{graph::Variable::Kind::Pose, i},
+                                             graph::Variable{graph::Variable::Kind::Pose, j}};
+  if (i == j) return 0.0;
+  const Eigen::MatrixXd joint = marginals.joint(poses);
+  Eigen::Matrix<double, 1, 12> h = Eigen::Matrix<double, 1, 12>::Zero();
+  h.segment<3>(0) = axis.transpose() * state.graph.poses[i].q.toRotationMatrix();
+  h.segment<3>(6) = -axis.transpose() * state.graph.poses[j].q.toRotationMatrix();
+  return (h * joint * h.transpose())(0, 0);
+}
+
+/// Walls that continue each other are told apart by where along them they were touched.
+double along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a, std::size_t b) {
+  const auto ia = contact_interval(state, a), ib = contact_interval(state, b);
+  const auto visit_a = last_visit(state, a), visit_b = last_visit(state, b);
+  if (!ia || !ib || !visit_a || !visit_b) return 0.0;
+  const WallFrame fa(state.graph.landmarks[a]), fb(state.graph.landmarks[b]);
+  const double s0 = fb.along(fa.point(ia->lo)), s1 = fb.along(fa.point(ia->hi));
+  const double gap = std::max({0.0, std::min(s0, s1) - ib->hi, ib->lo - std::max(s0, s1)});
+  if (gap <= 0.0) return 0.0;
+  return gap * gap / (squared(kAlongGap) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
+}
+
+Edge turned(Edge edge, int quarter_turns) {
+  // Counter-clockwise round the rectangle: what is +u in the newcomer's axes is +v in axes turned back by 90°.
+  constexpr std::array<Edge, 4> round{Edge::PlusU, Edge::PlusV, Edge::MinusU, Edge::MinusV};
+  if (edge == Edge::None) return edge;
+  const auto at = static_cast<std::size_t>(std::find(round.begin(), round.end(), edge) - round.begin());
+  return round[(at + static_cast<std::size_t>(quarter_turns)) % 4];
+}
+
+}  // namespace
+
+double gate(double sigma, int dimensions) {
+  // z such that a χ²(1) variable exceeds sigma² as often as a standard normal one exceeds z; then Wilson–Hilferty for k dimensions.
+  const double tail = std::erfc(sigma / std::numbers::sqrt2);
+  double lo = 0.0, hi = 10.0;
+  for (int n = 0; n < 60; ++n) {
+    const double z = 0.5 * (lo + hi);
+    (0.5 * std::erfc(z / std::numbers::sqrt2) > tail ? lo : hi) = z;
+  }
+  const double k = dimensions, h = 2.0 / (9.0 * k);
+  return k * std::pow(1.0 - h + lo * std::sqrt(h), 3.0);
+}
+
+std::optional<Interval> contact_interval(const MapState& state, std::size_t wall) {
+  const WallFrame frame(state.graph.landmarks[wall]);
+  std::optional<Interval> out;
+  for (const auto& visit : state.observations) {
+    if (visit.landmark != wall) continue;
+    for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k) {
+      const auto& c = state.graph.contacts[k];
+      const Eigen::Vector3d p = state.graph.poses[c.i] * (c.T_i_hand * state.graph.touch_points[c.touch].p_hand);
+      if (std::abs(frame.distance(p)) > kOnPlane) continue;
+      const double s = frame.along(p);
+      if (!out) out = Interval{s, s};
+      out->lo = std::min(out->lo, s), out->hi = std::max(out->hi, s);
+    }
+  }
+  return out;
+}
+
+std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
+                                  const MapperConfig::Association& config) {
+  std::vector<Candidate> out;
+  const auto& landmarks = state.graph.landmarks;
+  const Landmark& a = landmarks[newcomer];
+  for (std::size_t other = 0; other < landmarks.size(); ++other) {
+    const Landmark& b = landmarks[other];
+    if (other == newcomer || !b.active || b.kind != a.kind) continue;
+    const Difference d = difference(state, newcomer, other, config);
+    const Eigen::VectorXd e = d.of(a, b);
+    const int heading = a.kind == LandmarkKind::Wall ? 1 : 3;
+    if (std::abs(e[heading]) > kMaxTurn) continue;
+    const std::array<graph::Variable, 2> pair{graph::Variable{graph::Variable::Kind::Landmark, newcomer},
+                                              graph::Variable{graph::Variable::Kind::Landmark, other}};
+    const Eigen::MatrixXd j = jacobian(d, a, b);
+    Eigen::MatrixXd s = j * marginals.joint(pair) * j.transpose();
+    s.diagonal() += d.noise.cwiseAbs2();
+    double distance = e.dot(s.ldlt().solve(e));
+    int dimensions = static_cast<int>(e.size());
+    if (a.kind == LandmarkKind::Wall) distance += along_wall_distance(state, marginals, newcomer, other), ++dimensions;
+    if (distance <= gate(config.gate_sigma, dimensions)) out.push_back({other, d.quarter_turns, distance, dimensions});
+  }
+  std::sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.distance < y.distance; });
+  return out;
+}
+
+void merge(MapState& state, std::size_t from, const Candidate& candidate) {
+  const std::size_t to = candidate.landmark;
+  for (auto& visit : state.observations) {
+    if (visit.landmark != from) continue;
+    visit.landmark = to;
+    for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k) {
+      auto& contact = state.graph.contacts[k];
+      contact.landmark = to;
+      contact.edge = turned(contact.edge, candidate.quarter_turns);
+      contact.corner = turned(contact.corner, candidate.quarter_turns);
+    }
+    if (visit.contacts == 0) state.graph.seats[visit.seat].landmark = to;
+  }
+  state.graph.landmarks[from].active = false;
+  auto& record = state.landmarks[to];
+  const auto& other = state.landmarks[from];
+  record.observations += other.observations;
+  record.first_seen_s = std::min(record.first_seen_s, other.first_seen_s);
+  record.last_seen_s = std::max(record.last_seen_s, other.last_seen_s);
+}
+
+}  // namespace kinemap

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapper/observe.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kinemap {
+namespace {
+
+using graph::ContactFactor;
+using graph::Edge;
+using graph::LandmarkKind;
+
+constexpr double kTypicalTip = 0.18;  // m, wrist to finger tip of a wearer of whom nothing is known
+
+/// Indices into observation.contacts, thinned by distance; contacts in corners and contacts without a side are treated as they are:
+/// the former always kept, the latter left out for rectangles, of which they would only pull on the plane.
+std::vector<std::size_t> thinned(const Observation& observation, const std::vector<TracePoint>& points, double spacing) {
+  const bool rectangle = observation.landmark.kind != LandmarkKind::Wall;
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < observation.contacts.size(); ++k) {
+    if (rectangle && observation.labels[k].edge == Edge::None) continue;
+    const bool corner = observation.labels[k].corner != Edge::None;
+    const auto& p = points[observation.contacts[k]].p;
+    if (corner || kept.empty() || (p - points[observation.contacts[kept.back()]].p).norm() >= spacing) kept.push_back(k);
+  }
+  return kept;
+}
+
+/// Factor by which the noise of single contacts grows so that contacts on one side within the correlation time count as one.
+std::array<double, 5> inflation(const Observation& observation, const std::vector<TracePoint>& points,
+                                const std::vector<std::size_t>& kept, double spacing, double correlation_s) {
+  std::array<double, 5> count{}, duration{};
+  for (std::size_t n = 0; n < kept.size(); ++n) {
+    const auto side = static_cast<std::size_t>(observation.labels[kept[n]].edge);
+    count[side] += 1.0;
+    if (n == 0) continue;
+    const auto& now = points[observation.contacts[kept[n]]];
+    const auto& before = points[observation.contacts[kept[n - 1]]];
+    if ((now.p - before.p).norm() < 4.0 * spacing) duration[side] += now.time_s - before.time_s;
+  }
+  std::array<double, 5> out{};
+  for (std::size_t side = 0; side < 5; ++side)
+    out[side] = std::sqrt(std::max(1.0, count[side] / (1.0 + duration[side] / correlation_s)));
+  return out;
+}
+
+void append_landmark(const graph::Landmark& landmark, double begin_s, double end_s, double floor_z, MapState& state) {
+  state.graph.landmarks.push_back(landmark);
+  state.landmarks.push_back(LandmarkRecord{0, 1, begin_s, end_s, floor_z});
+}
+
+}  // namespace
+
+std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& graph, std::size_t touch) {
+  std::vector<TracePoint> points;
+  points.reserve(trace.contacts.size());
+  for (const auto& contact : trace.contacts) {
+    const Pose& T_map_key = graph.poses[contact.key_pose];
+    points.push_back({contact.time_s, T_map_key * (contact.T_key_hand * graph.touch_points[touch].p_hand), T_map_key.p});
+  }
+  return points;
+}
+
+std::size_t add_observation(const Observation& observation, const Trace& trace, const std::vector<TracePoint>& points,
+                            std::size_t touch, double floor_z, const MapperConfig& config, MapState& state) {
+  const std::size_t landmark = state.graph.landmarks.size();
+  const double begin_s = points[observation.contacts.front()].time_s, end_s = points[observation.contacts.back()].time_s;
+  append_landmark(observation.landmark, begin_s, end_s, floor_z, state);
+  if (observation.landmark.kind == LandmarkKind::Screen)
+    state.graph.landmark_priors.push_back({landmark, 6, 0.0, config.odometry.tilt_rad});
+
+  const auto kept = thinned(observation, points, config.hand.contact_spacing_m);
+  const auto wider =
+      inflation(observation, points, kept, config.hand.contact_spacing_m, config.hand.contact_correlation_s);
+  ObservationRecord record{landmark, 0, state.graph.contacts.size(), kept.size(), 0, begin_s, end_s};
+  for (const std::size_t k : kept) {
+    const HandContact& contact = trace.contacts[observation.contacts[k]];
+    const SideLabel label = observation.labels[k];
+    const double sigma = config.hand.contact_sigma_m * wider[static_cast<std::size_t>(label.edge)];
+    ContactFactor factor;
+    factor.i = contact.key_pose;
+    factor.landmark = landmark;
+    factor.touch = touch;
+    factor.T_i_hand = contact.T_key_hand;
+    factor.edge = label.edge;
+    factor.corner = label.corner;
+    factor.sigma_plane_m = factor.sigma_edge_m = sigma;
+    factor.sigma_corner_m = config.hand.corner_sigma_m;
+    factor.loss = {graph::Loss::Kind::Cauchy, config.hand.loss_scale};
+    state.graph.contacts.push_back(factor);
+  }
+  if (!kept.empty()) record.key_pose = trace.contacts[observation.contacts[kept[kept.size() / 2]]].key_pose;
+  state.observations.push_back(record);
+  state.summary.contacts = state.graph.contacts.size();
+  return landmark;
+}
+
+std::size_t add_seat(const Sitting& sitting, double floor_z, const MapperConfig& config, MapState& state) {
+  const std::size_t landmark = state.graph.landmarks.size();
+  const Pose T_map_seat = state.graph.poses[sitting.key_pose] * sitting.T_key_seat;
+  graph::Landmark seat;
+  seat.kind = LandmarkKind::Seat;
+  seat.x = {T_map_seat.p.x(), T_map_seat.p.y(), T_map_seat.p.z(), heading_of(T_map_seat.q), 0.0, 0.0, 0.0};
+  append_landmark(seat, sitting.begin_s, sitting.end_s, floor_z, state);
+  graph::SeatFactor factor;
+  factor.i = sitting.key_pose;
+  factor.landmark = landmark;
+  factor.T_i_seat = sitting.T_key_seat;
+  factor.sigma_level_m = std::hypot(config.seats.level_sigma_m, sitting.spread_m);
+  factor.sigma_z_m = config.seats.height_sigma_m;
+  factor.sigma_heading_rad = config.seats.heading_sigma_rad;
+  factor.loss = {graph::Loss::Kind::Cauchy, config.seats.loss_scale};
+  state.observations.push_back(
+      {landmark, sitting.key_pose, 0, 0, state.graph.seats.size(), sitting.begin_s, sitting.end_s});
+  state.graph.seats.push_back(factor);
+  return landmark;
+}
+
+graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer, std::optional<double> stature_m) {
+  // In the T-pose the right hand points along its −y axis.
+  Eigen::Vector3d tip(0.0, -kTypicalTip, 0.0);
+  if (wearer.stature_m) stature_m = wearer.stature_m;
+  if (config.tip_m > 0.0) tip.y() = -config.tip_m;
+  else if (wearer.p_hand_fingertip) tip = *wearer.p_hand_fingertip;
+  else if (stature_m) tip.y() = -config.tip_per_stature * *stature_m;
+  return {tip, tip, Eigen::Vector3d::Constant(0.02), true};
+}
+
+}  // namespace kinemap

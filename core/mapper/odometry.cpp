@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapper/odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinemap {
+namespace {
+
+constexpr double kStep = 0.08;       // m: a stance foot that is farther from the one before has climbed a step
+constexpr int kSteadyStances = 3;    // so many level stances in a row are a level
+constexpr double kSameLevel = 0.15;  // m: closer to a known level than this is that level
+
+double squared(double x) { return x * x; }
+
+}  // namespace
+
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
+  // A restart of the suit says nothing of the way in between: so wide that only landmarks tie the parts together.
+  if (to.discontinuity) {
+    graph::Matrix6 loose = graph::Matrix6::Identity();
+    loose.topLeftCorner<3, 3>() /= 10.0;
+    loose.bottomRightCorner<3, 3>() /= 2.0;
+    return loose;
+  }
+  const double dt = std::max(0.01, to.time_s - from.time_s);
+  const double level = std::sqrt(squared(config.translation_m_per_sqrt_m) * to.path_m +
+                                 squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
+  const double up = std::sqrt(squared(config.vertical_m_per_sqrt_m) * to.path_m +
+                              squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
+  const double heading =
+      std::sqrt(squared(config.heading_rad_per_sqrt_s) * dt + squared(config.heading_rad_per_rad * to.turn_rad));
+  graph::Matrix6 information = graph::Matrix6::Zero();
+  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad, 1.0 / heading;
+  return information;
+}
+
+void Odometry::add(const KeyPose& key_pose, graph::Graph& graph) {
+  if (key_poses_.empty()) {
+    graph.poses.push_back(key_pose.T_odom_pelvis);  // the map frame is the suit's world frame at the first frame
+    graph::PriorFactor prior;
+    prior.T_map_i = key_pose.T_odom_pelvis;
+    prior.sqrt_information = graph::Matrix6::Identity() * 1e4;
+    graph.priors.push_back(prior);
+  } else {
+    add_between(key_pose, graph);
+  }
+  graph::GravityFactor gravity;
+  gravity.i = key_pose.id;
+  gravity.up = key_pose.T_odom_pelvis.q.conjugate() * Eigen::Vector3d::UnitZ();
+  gravity.sigma_rad = config_.tilt_rad;
+  graph.gravity.push_back(gravity);
+  add_floor(key_pose, graph);
+  key_poses_.push_back(key_pose);
+}
+
+void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) const {
+  const KeyPose& from = key_poses_.back();
+  graph::BetweenFactor between;
+  between.i = from.id;
+  between.j = key_pose.id;
+  between.T_i_j = from.T_odom_pelvis.inverse() * key_pose.T_odom_pelvis;
+  between.sqrt_information = odometry_sqrt_information(from, key_pose, config_);
+  graph.between.push_back(between);
+  graph.poses.push_back(graph.poses.back() * between.T_i_j);
+}
+
+void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
+  if (!key_pose.p_pelvis_stance) return;
+  const double z_odom = (key_pose.T_odom_pelvis * *key_pose.p_pelvis_stance).z();
+  const double step = last_stance_z_ ? z_odom - *last_stance_z_ : 0.0;
+  last_stance_z_ = z_odom;
+  if (levels_.empty()) {
+    level_z_ = z_odom;
+    levels_.push_back(level_z_);
+    on_level_ = true;
+  } else if (key_pose.discontinuity) {
+    off_level_ = 0.0;  // assume that a restart did not change the floor
+  } else if (std::abs(step) > kStep || !on_level_) {
+    off_level_ += step;
+    steady_ = std::abs(step) > kStep ? 0 : steady_ + 1;
+    on_level_ = steady_ >= kSteadyStances;
+    if (!on_level_) return;
+    const double z = level_z_ + off_level_;
+    const auto known = std::min_element(levels_.begin(), levels_.end(),
+                                        [z](double a, double b) { return std::abs(a - z) < std::abs(b - z); });
+    if (std::abs(*known - z) < kSameLevel) level_z_ = *known;
+    else levels_.push_back(level_z_ = z);
+    off_level_ = 0.0;
+  }
+  graph::FloorFactor floor;
+  floor.i = key_pose.id;
+  floor.p_i = *key_pose.p_pelvis_stance;
+  floor.z = level_z_;
+  floor.sigma_m = config_.floor_m;
+  floor.loss = {graph::Loss::Kind::Huber, 2.0};
+  graph.floors.push_back(floor);
+  // The height is known at once; waiting for the next optimisation would let the vertical drift into the next object.
+  Pose& pose = graph.poses.back();
+  pose.p.z() += level_z_ - (pose * floor.p_i).z();
+}
+
+}  // namespace kinemap

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/events.hpp"
+#include "core/graph/graph.hpp"
+#include "core/mapper/config.hpp"
+
+namespace kinemap {
+
+/// Turns key poses into poses and factors of the graph: odometry (paper eq. 2), gravity, and the floor under the stance foot.
+class Odometry {
+ public:
+  explicit Odometry(const MapperConfig::Odometry& config) : config_(config) {}
+
+  /// Appends pose `key_pose.id` to the graph with its factors. Key poses come in order, without gaps.
+  void add(const KeyPose& key_pose, graph::Graph& graph);
+
+  [[nodiscard]] const std::vector<KeyPose>& key_poses() const { return key_poses_; }
+  /// Height of the level that the wearer stands on, map frame, m.
+  [[nodiscard]] double floor_z() const { return level_z_; }
+
+ private:
+  void add_between(const KeyPose& key_pose, graph::Graph& graph) const;
+  void add_floor(const KeyPose& key_pose, graph::Graph& graph);
+
+  MapperConfig::Odometry config_;
+  std::vector<KeyPose> key_poses_;
+  double level_z_ = 0.0;
+  std::optional<double> last_stance_z_;  ///< odom frame, m
+  std::vector<double> levels_;           ///< heights of the levels found so far, map frame
+  double off_level_ = 0.0;               ///< climbed since the last level, m
+  int steady_ = 0;                       ///< stances in a row without a step up or down
+  bool on_level_ = false;
+};
+
+/// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame.
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
+
+}  // namespace kinemap

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/assignment.hpp"
 #include "tools/kinemap/alignment.hpp"
-#include "tools/kinemap/assignment.hpp"
 #include "tools/kinemap/shape.hpp"
 
 namespace kinemap::eval {

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/status.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace kinemap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSilenceS = 2.0;  // without frames for so long, the suit does not send
+
+double rounded(double value, double per_unit = 1e3) { return std::round(value * per_unit) / per_unit + 0.0; }
+
+bool receiving(const ReceiverState& suit) {
+  return suit.counts.last_frame_s >= 0.0 && suit.now_s - suit.counts.last_frame_s < kSilenceS;
+}
+
+Json stream_json(const AssemblerStats& s) {
+  Json faults = Json::object();
+  for (std::size_t i = 0; i < s.faults.size(); ++i) faults[mxtp::to_string(static_cast<mxtp::Fault>(i))] = s.faults[i];
+  return {{"datagrams", s.datagrams},
+          {"bytes", s.bytes},
+          {"frames", s.frames},
+          {"faults", std::move(faults)},
+          {"skipped_types", s.skipped_types},
+          {"meta", s.meta},
+          {"duplicates", s.duplicates},
+          {"late", s.late},
+          {"incomplete", s.incomplete},
+          {"lost_samples", s.lost_samples},
+          {"other_character", s.other_character},
+          {"other_sender", s.other_sender},
+          {"not_a_person", s.not_a_person},
+          {"refused_pinned", s.refused_pinned},
+          {"restarts", s.restarts},
+          {"odd_bones", s.odd_bones}};
+}
+
+Json socket_json(const ReceiverCounts& c) {
+  return {{"kernel_drops", c.kernel_drops},
+          {"truncated", c.truncated},
+          {"tcp_open", c.tcp_open},
+          {"tcp_accepted", c.tcp_accepted},
+          {"tcp_refused", c.tcp_refused},
+          {"tcp_closed_garbage", c.tcp_closed_garbage},
+          {"tcp_skipped_bytes", c.tcp_skipped_bytes}};
+}
+
+Json wearer_json(const WearerInfo& wearer) {
+  Json json = Json::object();
+  if (!wearer.name.empty()) json["name"] = wearer.name;
+  if (wearer.stature_m) json["stature"] = rounded(*wearer.stature_m);
+  json["hand_points"] = wearer.p_hand_fingertip.has_value() || wearer.p_hand_palm.has_value();
+  return json;
+}
+
+Json suit_json(const Status& status) {
+  const ReceiverState& suit = status.suit;
+  Json json = {{"receiving", receiving(suit)},
+               {"transport", status.suit_config.transport},
+               {"address", status.suit_config.address},
+               {"port", status.suit_port}};
+  if (suit.counts.rate_hz > 0.0) json["rate_hz"] = rounded(suit.counts.rate_hz);
+  if (suit.counts.last_frame_s >= 0.0) json["silence_s"] = rounded(suit.now_s - suit.counts.last_frame_s);
+  if (!suit.news->sender.empty()) json["sender"] = suit.news->sender;
+  if (suit.news->refusal) json["refusal"] = *suit.news->refusal;
+  json["wearer"] = wearer_json(suit.news->wearer);
+  json["stream"] = stream_json(suit.counts.stream);
+  json["socket"] = socket_json(suit.counts);
+  return json;
+}
+
+Json tracker_json(const TrackerStats& t) {
+  return {{"frames", t.frames},         {"key_poses", t.key_poses},
+          {"traces", t.traces},         {"traces_rejected", t.traces_rejected},
+          {"sittings", t.sittings},     {"contacts_thinned_out", t.contacts_thinned_out},
+          {"path_m", rounded(t.path_m)}};
+}
+
+Json ring_json(const RingStats& ring) {
+  return {{"capacity", ring.capacity}, {"fill", ring.fill}, {"dropped", ring.refused}};
+}
+
+Json rings_json(const PipelineStats& p) {
+  Json json = {{"frames", ring_json(p.frames)}, {"events", ring_json(p.events)}, {"notices", ring_json(p.notices)}};
+  json["events"]["held_back"] = p.events_held_back;
+  return json;
+}
+
+Json map_json(const Status& status) {
+  const MapSnapshot& map = *status.map;
+  const SolverStats& solver = status.pipeline.solver;
+  Json objects = Json::object();
+  for (const auto type : {ObjectType::Wall, ObjectType::Table, ObjectType::Screen, ObjectType::Chair}) {
+    std::uint64_t count = 0;
+    for (const auto& object : map.objects) count += object.type == type;
+    objects[to_string(type)] = count;
+  }
+  return {{"revision", map.revision},
+          {"time", rounded(map.time_s)},
+          {"objects", std::move(objects)},
+          {"rooms", map.rooms.size()},
+          {"unresolved_traces", map.unresolved.size()},
+          {"key_poses", map.graph.key_poses},
+          {"landmarks", map.graph.landmarks},
+          {"contacts", map.graph.contacts},
+          {"loop_closures", map.graph.loop_closures},
+          {"loop_closures_revoked", map.graph.loop_closures_revoked},
+          {"optimisations", map.graph.optimisations},
+          {"optimisations_failed", map.graph.optimisations_failed},
+          {"last_cost", rounded(map.graph.last_cost)},
+          {"solver",
+           {{"messages", solver.messages},
+            {"longest_s", rounded(solver.longest_s, 1e6)},
+            {"busy_s", rounded(solver.busy_s)}}}};
+}
+
+Json api_json(const ApiCounts& api) {
+  return {{"connections", api.connections},
+          {"streams", api.streams},
+          {"accepted", api.accepted},
+          {"refused", api.refused},
+          {"requests", api.requests},
+          {"errors", api.errors},
+          {"messages_skipped", api.messages_skipped},
+          {"slow_clients_closed", api.slow_clients_closed}};
+}
+
+Json process_json() {
+  Json json = {{"pid", ::getpid()}};
+  std::uint64_t size = 0, resident = 0;
+  std::ifstream statm("/proc/self/statm");
+  if (statm >> size >> resident) json["rss_bytes"] = resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return json;
+}
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string status_text(const Status& status) {
+  return text_of({{"version", KINEMAP_VERSION},
+                  {"uptime_s", rounded(status.uptime_s)},
+                  {"suit", suit_json(status)},
+                  {"tracker", tracker_json(status.pipeline.tracker)},
+                  {"rings", rings_json(status.pipeline)},
+                  {"map", map_json(status)},
+                  {"clients", api_json(status.api)},
+                  {"process", process_json()}});
+}
+
+std::string health_text(const Status& status) {
+  const std::string transport = status.suit_config.transport == "tcp" ? "TCP " : "UDP ";
+  const std::string where = transport + status.suit_config.address + ":" + std::to_string(status.suit_port);
+  if (status.suit.news->refusal) return text_of({{"status", "refused"}, {"message", *status.suit.news->refusal}});
+  if (receiving(status.suit))
+    return text_of({{"status", "ok"}, {"message", "receiving from " + status.suit.news->sender}});
+  const bool ever = status.suit.counts.last_frame_s >= 0.0;
+  const std::string message =
+      (ever ? "the suit has fallen silent; listening on " : "no suit yet; listening on ") + where;
+  return text_of({{"status", "waiting"}, {"message", message}});
+}
+
+}  // namespace kinemap

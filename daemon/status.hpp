@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/map.hpp"
+#include "daemon/config.hpp"
+#include "daemon/pipeline.hpp"
+#include "daemon/receiver.hpp"
+
+namespace kinemap {
+
+/// What the server counts; its thread only.
+struct ApiCounts {
+  std::uint64_t connections = 0;  ///< open now, HTTP and WebSocket
+  std::uint64_t streams = 0;      ///< of these, WebSocket
+  std::uint64_t accepted = 0;
+  std::uint64_t refused = 0;  ///< beyond api.max_clients
+  std::uint64_t requests = 0;
+  std::uint64_t errors = 0;            ///< answers with a status of 400 and above
+  std::uint64_t messages_skipped = 0;  ///< news that a slow client did not get, since newer ones were there
+  std::uint64_t slow_clients_closed = 0;
+};
+
+/// Everything that the status page shows.
+struct Status {
+  double uptime_s = 0.0;
+  Config::Suit suit_config;
+  std::uint16_t suit_port = 0;  ///< the port in use
+  ReceiverState suit;
+  PipelineStats pipeline;
+  std::shared_ptr<const MapSnapshot> map;
+  ApiCounts api;
+};
+
+/// JSON of /api/v1/status; daemon/README.md explains each field.
+std::string status_text(const Status& status);
+
+/// JSON of /healthz: {"status": "ok" | "waiting" | "refused", "message": …}. "ok": frames came within the last 2 s.
+std::string health_text(const Status& status);
+
+}  // namespace kinemap

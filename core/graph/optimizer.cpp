@@ -111,16 +111,7 @@ ceres::Solver::Options solver_options(const OptimizerOptions& options, double ra
 Verdict solve(const Graph& graph, const OptimizerOptions& options, double radius, Values& values) {
   const std::size_t first_free_pose = first_free(graph, options);
   ResidualBlocks blocks(graph, values, first_free_pose);
-  double constant_cost = 0.0;
-  {
-    std::vector<double> residuals;
-    for (const ResidualBlock& block : blocks.constant) {
-      residuals.resize(static_cast<std::size_t>(block.cost->num_residuals()));
-      if (block.cost->Evaluate(block.parameters.data(), residuals.data(), nullptr)) {
-        for (const double r : residuals) constant_cost += 0.5 * r * r;
-      }
-    }
-  }
+  const double constant_cost = evaluate_cost(blocks.constant);
   PoseManifold manifold;
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -169,7 +160,7 @@ Verdict optimize(Graph& graph, const OptimizerOptions& options) {
 double cost(const Graph& graph) {
   if (find_fault(graph)) return std::numeric_limits<double>::quiet_NaN();
   Values values(graph);
-  return ResidualBlocks(graph, values, 0).cost();
+  return evaluate_cost(ResidualBlocks(graph, values, 0).blocks);
 }
 
 }  // namespace kinemap::graph

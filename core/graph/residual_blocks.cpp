@@ -57,6 +57,18 @@ bool Values::all_finite() const {
          std::all_of(touch_points.begin(), touch_points.end(), finite);
 }
 
+double evaluate_cost(const std::vector<ResidualBlock>& blocks) {
+  double sum = 0.0;
+  std::vector<double> residuals;
+  for (const ResidualBlock& block : blocks) {
+    residuals.resize(static_cast<std::size_t>(block.cost->num_residuals()));
+    if (!block.cost->Evaluate(block.parameters.data(), residuals.data(), nullptr))
+      return std::numeric_limits<double>::quiet_NaN();
+    for (const double r : residuals) sum += r * r;
+  }
+  return 0.5 * sum;
+}
+
 ResidualBlocks::ResidualBlocks(const Graph& graph, Values& values, std::size_t first_free_pose)
     : graph_(graph), values_(values), first_free_pose_(first_free_pose) {
   blocks.reserve(graph.between.size() + graph.poses.size() + graph.contacts.size() + graph.seats.size());
@@ -64,20 +76,6 @@ ResidualBlocks::ResidualBlocks(const Graph& graph, Values& values, std::size_t f
   add_contacts();
   add_landmark_factors();
   add_touch_priors();
-}
-
-double ResidualBlocks::cost() const {
-  double sum = 0.0;
-  std::vector<double> residuals;
-  for (const auto* list : {&blocks, &constant}) {
-    for (const ResidualBlock& block : *list) {
-      residuals.resize(static_cast<std::size_t>(block.cost->num_residuals()));
-      if (!block.cost->Evaluate(block.parameters.data(), residuals.data(), nullptr))
-        return std::numeric_limits<double>::quiet_NaN();
-      for (const double r : residuals) sum += r * r;
-    }
-  }
-  return 0.5 * sum;
 }
 
 void ResidualBlocks::add_pose_factors() {

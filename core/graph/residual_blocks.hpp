@@ -51,6 +51,9 @@ struct PoseIndex {
   }
 };
 
+/// Σ ½‖r‖² over blocks; NaN when one cannot be evaluated.
+double evaluate_cost(const std::vector<ResidualBlock>& blocks);
+
 class ResidualBlocks {
  public:
   /// Blocks over poses, active landmarks and free touching points. `graph` (without fault, see check.hpp) and `values`
@@ -58,9 +61,6 @@ class ResidualBlocks {
   ResidualBlocks(const Graph& graph, Values& values, std::size_t first_free_pose);
   ResidualBlocks(const ResidualBlocks&) = delete;
   ResidualBlocks& operator=(const ResidualBlocks&) = delete;
-
-  [[nodiscard]] double cost()
-      const;  ///< Σ ½‖r‖² at `values`, constant blocks included; NaN when one cannot be evaluated
 
   std::vector<ResidualBlock> blocks;
   std::vector<ResidualBlock> constant;

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/graph/marginals.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cassert>
+
+#include "core/graph/check.hpp"
+#include "core/graph/normal_equations.hpp"
+
+namespace kinemap::graph {
+namespace {
+
+using Cholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
+
+/// A pivot this small against its diagonal entry is rounding: the variable is not determined.
+constexpr double kSingularPivot = 1e-12;
+
+bool regular(const Eigen::SparseMatrix<double>& L, const Eigen::SparseMatrix<double>& A) {
+  for (int j = 0; j < L.cols(); ++j) {
+    const double pivot = L.valuePtr()[L.outerIndexPtr()[j]];
+    if (!(pivot * pivot > kSingularPivot * A.coeff(j, j))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+/// A = LLᵀ in the permuted order. Σ of some columns E is EᵀA⁻¹E = YᵀY with LY = E, and a unit vector's forward solve
+/// only touches its path to the root of the elimination tree: a query costs far less than one full back-substitution.
+class Marginals::Impl {
+ public:
+  Impl(NormalEquations equations, std::size_t poses, std::size_t landmarks, Eigen::SparseMatrix<double> L)
+      : columns_(std::move(equations.columns)), poses_(poses), landmarks_(landmarks), L_(std::move(L)) {}
+
+  [[nodiscard]] Eigen::MatrixXd joint(std::span<const Variable> variables) const {
+    std::vector<int> wanted;  // scalar columns, stacked
+    for (const Variable& v : variables) {
+      const ColumnRange range = columns_of(v);
+      for (int k = 0; k < range.size; ++k) wanted.push_back(range.start + k);
+    }
+    std::vector<int> row_of(static_cast<std::size_t>(L_.cols()), -1);
+    const std::vector<int> path = ancestors(wanted, row_of);
+
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    RowMajor Y = RowMajor::Zero(static_cast<Eigen::Index>(path.size()), static_cast<Eigen::Index>(wanted.size()));
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      Y(row_of[static_cast<std::size_t>(wanted[k])], static_cast<Eigen::Index>(k)) = 1.0;
+    for (std::size_t r = 0; r < path.size(); ++r) {
+      Eigen::SparseMatrix<double>::InnerIterator it(L_, path[r]);  // the diagonal comes first
+      Y.row(static_cast<Eigen::Index>(r)) /= it.value();
+      for (++it; it; ++it) {
+        Y.row(row_of[static_cast<std::size_t>(it.row())]) -= it.value() * Y.row(static_cast<Eigen::Index>(r));
+      }
+    }
+    return Y.transpose() * Y;
+  }
+
+ private:
+  [[nodiscard]] ColumnRange columns_of(const Variable& v) const {
+    const std::size_t offset = v.kind == Variable::Kind::Pose       ? 0
+                               : v.kind == Variable::Kind::Landmark ? poses_
+                                                                    : poses_ + landmarks_;
+    assert(offset + v.index < columns_.size());
+    return columns_[offset + v.index];
+  }
+
+  /// The given columns and all their ancestors in the elimination tree, ascending; `row_of` gets each one's place in
+  /// the list.
+  [[nodiscard]] std::vector<int> ancestors(const std::vector<int>& from, std::vector<int>& row_of) const {
+    std::vector<int> path;
+    for (int j : from) {
+      while (j >= 0 && row_of[static_cast<std::size_t>(j)] < 0) {
+        row_of[static_cast<std::size_t>(j)] = 0;
+        path.push_back(j);
+        const int first = L_.outerIndexPtr()[j], last = L_.outerIndexPtr()[j + 1];
+        j = last - first > 1 ? L_.innerIndexPtr()[first + 1] : -1;  // parent: first row below the diagonal
+      }
+    }
+    std::sort(path.begin(), path.end());
+    for (std::size_t r = 0; r < path.size(); ++r) row_of[static_cast<std::size_t>(path[r])] = static_cast<int>(r);
+    return path;
+  }
+
+  std::vector<ColumnRange> columns_;
+  std::size_t poses_, landmarks_;
+  Eigen::SparseMatrix<double> L_;
+};
+
+std::optional<Marginals> Marginals::compute(const Graph& graph) {
+  if (find_fault(graph)) return std::nullopt;
+  std::optional<NormalEquations> equations = assemble_normal_equations(graph);
+  if (!equations) return std::nullopt;
+  Cholesky cholesky(equations->lower);
+  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  Eigen::SparseMatrix<double> L = cholesky.matrixL();
+  if (!regular(L, equations->lower)) return std::nullopt;
+  return Marginals(
+      std::make_unique<Impl>(std::move(*equations), graph.poses.size(), graph.landmarks.size(), std::move(L)));
+}
+
+Eigen::MatrixXd Marginals::joint(std::span<const Variable> variables) const { return impl_->joint(variables); }
+
+Marginals::Marginals(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Marginals::~Marginals() = default;
+Marginals::Marginals(Marginals&&) noexcept = default;
+Marginals& Marginals::operator=(Marginals&&) noexcept = default;
+
+}  // namespace kinemap::graph

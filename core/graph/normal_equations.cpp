@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/graph/normal_equations.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace kinemap::graph {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Strided = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>;
+
+std::vector<int> tangent_sizes(const Graph& graph) {
+  std::vector<int> sizes(graph.poses.size(), 6);
+  for (const Landmark& l : graph.landmarks) sizes.push_back(l.active ? dimension(l.kind) : 0);
+  for (const TouchPoint& t : graph.touch_points) sizes.push_back(t.fixed ? 0 : 3);
+  return sizes;
+}
+
+/// Position of each variable in a minimum-degree order of the graph of variables (small: whole poses, not scalars).
+std::vector<int> elimination_order(const std::vector<ResidualBlock>& blocks, std::size_t variables) {
+  std::vector<Eigen::Triplet<double, int>> pairs;
+  pairs.reserve(6 * blocks.size() + variables);
+  for (std::size_t v = 0; v < variables; ++v) pairs.emplace_back(static_cast<int>(v), static_cast<int>(v), 1.0);
+  for (const ResidualBlock& block : blocks) {
+    for (int a = 0; a < block.count; ++a) {
+      for (int b = 0; b < block.count; ++b) {
+        if (a != b) pairs.emplace_back(static_cast<int>(block.variables[a]), static_cast<int>(block.variables[b]), 1.0);
+      }
+    }
+  }
+  const int n = static_cast<int>(variables);
+  Eigen::SparseMatrix<double> pattern(n, n);
+  pattern.setFromTriplets(pairs.begin(), pairs.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(pattern, order);
+  std::vector<int> position(variables);  // order.indices()(k) is the variable that is eliminated k-th
+  for (int k = 0; k < n; ++k) position[static_cast<std::size_t>(order.indices()(k))] = k;
+  return position;
+}
+
+std::vector<ColumnRange> lay_out(const std::vector<int>& sizes, const std::vector<int>& position) {
+  std::vector<std::size_t> by_position(sizes.size());
+  for (std::size_t v = 0; v < sizes.size(); ++v) by_position[static_cast<std::size_t>(position[v])] = v;
+  std::vector<ColumnRange> columns(sizes.size());
+  int next = 0;
+  for (const std::size_t v : by_position) {
+    columns[v] = {next, sizes[v]};
+    next += sizes[v];
+  }
+  return columns;
+}
+
+/// The non-zero blocks of the lower triangle: which there are, and where each lies among the values of a
+/// column-compressed matrix.
+class BlockPattern {
+ public:
+  BlockPattern(const std::vector<ResidualBlock>& blocks, const std::vector<ColumnRange>& columns) : columns_(columns) {
+    std::vector<std::uint64_t> keys;
+    for (const ResidualBlock& block : blocks) {
+      for (int a = 0; a < block.count; ++a) {
+        for (int b = 0; b < block.count; ++b) {
+          if (start(block.variables[a]) >= start(block.variables[b]))
+            keys.push_back(key(block.variables[a], block.variables[b]));
+        }
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    keys_ = std::move(keys);
+  }
+
+  /// Lower triangle with zero values (the upper half of diagonal blocks is stored as well, and ignored by who reads
+  /// it).
+  [[nodiscard]] Eigen::SparseMatrix<double> allocate();
+
+  /// Adds m (rows of variable `row`, columns of `col`, row not before col in the order).
+  template <class Matrix>
+  void add(VariableId row, VariableId col, const Matrix& m, double* values) const {
+    const auto it = std::lower_bound(keys_.begin(), keys_.end(), key(row, col));
+    const Place& place = places_[static_cast<std::size_t>(it - keys_.begin())];
+    for (Eigen::Index c = 0; c < m.cols(); ++c) {
+      Eigen::Map<Eigen::VectorXd>(values + place.offset + c * place.stride, m.rows()) += m.col(c);
+    }
+  }
+  [[nodiscard]] int start(VariableId v) const { return columns_[v].start; }
+
+ private:
+  struct Place {
+    Eigen::Index offset = 0, stride = 0;
+  };
+  [[nodiscard]] std::uint64_t key(VariableId row, VariableId col) const {
+    return static_cast<std::uint64_t>(start(col)) << 32 | static_cast<std::uint32_t>(start(row));
+  }
+
+  const std::vector<ColumnRange>& columns_;
+  std::vector<std::uint64_t> keys_;
+  std::vector<Place> places_;
+};
+
+Eigen::SparseMatrix<double> BlockPattern::allocate() {
+  int n = 0;
+  for (const ColumnRange& c : columns_) n = std::max(n, c.start + c.size);
+  std::vector<int> size_at(static_cast<std::size_t>(n), 0);
+  for (const ColumnRange& c : columns_) {
+    if (c.size > 0) size_at[static_cast<std::size_t>(c.start)] = c.size;
+  }
+  Eigen::SparseMatrix<double> m(n, n);
+  places_.resize(keys_.size());
+  std::vector<int> rows;
+  Eigen::Index offset = 0;
+  int* outer = m.outerIndexPtr();
+  for (std::size_t begin = 0, end = 0; begin < keys_.size(); begin = end) {
+    const int col = static_cast<int>(keys_[begin] >> 32);
+    rows.clear();
+    for (; end < keys_.size() && static_cast<int>(keys_[end] >> 32) == col; ++end) {
+      const int row = static_cast<int>(keys_[end] & 0xffffffffU);
+      places_[end].offset = offset + static_cast<Eigen::Index>(rows.size());
+      for (int k = 0; k < size_at[static_cast<std::size_t>(row)]; ++k) rows.push_back(row + k);
+    }
+    const Eigen::Index stride = static_cast<Eigen::Index>(rows.size());
+    for (std::size_t k = begin; k < end; ++k) places_[k].stride = stride;
+    for (int k = 0; k < size_at[static_cast<std::size_t>(col)]; ++k)
+      outer[col + k] = static_cast<int>(offset + k * stride);
+    offset += stride * size_at[static_cast<std::size_t>(col)];
+    m.data().resize(offset);
+    for (int k = 0; k < size_at[static_cast<std::size_t>(col)]; ++k) {
+      std::copy(rows.begin(), rows.end(),
+                &m.data().index(offset - stride * (size_at[static_cast<std::size_t>(col)] - k)));
+    }
+  }
+  outer[n] = static_cast<int>(offset);
+  std::fill_n(m.valuePtr(), offset, 0.0);
+  return m;
+}
+
+/// One block's Jacobians, evaluated into reused memory.
+class Linearised {
+ public:
+  bool evaluate(const ResidualBlock& block) {
+    rows_ = block.cost->num_residuals();
+    const auto& sizes = block.cost->parameter_block_sizes();
+    std::size_t need = 0;
+    for (const int size : sizes) need += static_cast<std::size_t>(size * rows_);
+    if (memory_.size() < need) memory_.resize(need);
+    residuals_.resize(static_cast<std::size_t>(rows_));
+    double* next = memory_.data();
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      pointers_[k] = next;
+      strides_[k] = sizes[k];
+      next += sizes[k] * rows_;
+    }
+    return block.cost->Evaluate(block.parameters.data(), residuals_.data(), pointers_.data());
+  }
+  [[nodiscard]] Strided jacobian(int k, int tangent) const {
+    const auto i = static_cast<std::size_t>(k);
+    return {pointers_[i], rows_, tangent, Eigen::OuterStride<>(strides_[i])};
+  }
+
+ private:
+  int rows_ = 0;
+  std::vector<double> memory_, residuals_;
+  std::array<double*, 3> pointers_{};
+  std::array<int, 3> strides_{};
+};
+
+}  // namespace
+
+std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
+  Values values(graph);
+  const ResidualBlocks problem(graph, values, 0);
+  const std::vector<ResidualBlock>& blocks = problem.blocks;
+  const std::vector<int> sizes = tangent_sizes(graph);
+  std::vector<bool> seen(sizes.size(), false);
+  for (const ResidualBlock& block : blocks) {
+    for (int k = 0; k < block.count; ++k) seen[block.variables[k]] = true;
+  }
+  for (std::size_t v = 0; v < sizes.size(); ++v) {
+    if (sizes[v] > 0 && !seen[v]) return std::nullopt;
+  }
+
+  NormalEquations out;
+  out.columns = lay_out(sizes, elimination_order(blocks, sizes.size()));
+  BlockPattern pattern(blocks, out.columns);
+  out.lower = pattern.allocate();
+  Linearised linearised;
+  for (const ResidualBlock& block : blocks) {
+    if (!linearised.evaluate(block)) return std::nullopt;
+    for (int a = 0; a < block.count; ++a) {
+      const auto Ja = linearised.jacobian(a, sizes[block.variables[a]]);
+      for (int b = 0; b < block.count; ++b) {
+        if (pattern.start(block.variables[a]) < pattern.start(block.variables[b])) continue;
+        const auto Jb = linearised.jacobian(b, sizes[block.variables[b]]);
+        const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> JtJ = Ja.transpose().lazyProduct(Jb);
+        pattern.add(block.variables[a], block.variables[b], JtJ, out.lower.valuePtr());
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace kinemap::graph

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/graph/residual_blocks.hpp"
+
+/// Private to core/graph: JᵀJ of a graph, assembled block by block straight from the factors' Jacobians.
+namespace kinemap::graph {
+
+/// Where a variable's tangent sits among the scalar columns; size 0: it has none (inactive landmark, fixed touching
+/// point).
+struct ColumnRange {
+  int start = 0;
+  int size = 0;
+};
+
+struct NormalEquations {
+  Eigen::SparseMatrix<double> lower;  ///< lower triangle of P·JᵀJ·Pᵀ, P a fill-reducing order of whole variables
+  std::vector<ColumnRange> columns;   ///< by VariableId, in the permuted order
+};
+
+/// nullopt when a variable has no factor at all or a factor cannot be evaluated. `graph` without fault (see check.hpp).
+std::optional<NormalEquations> assemble_normal_equations(const Graph& graph);
+
+}  // namespace kinemap::graph

@@ -21,15 +21,18 @@ struct Attempt {
 };
 
 /// Members of the surface in its plane: first axis `u`, second `v`, from `origin`.
-std::vector<Eigen::Vector2d> in_plane(std::span<const TracePoint> points, const Surface& surface, const Eigen::Vector3d& origin,
-                                      const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+std::vector<Eigen::Vector2d> in_plane(std::span<const TracePoint> points, const Surface& surface,
+                                      const Eigen::Vector3d& origin, const Eigen::Vector3d& u,
+                                      const Eigen::Vector3d& v) {
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(surface.members.size());
-  for (const std::size_t i : surface.members) flat.emplace_back(u.dot(points[i].p - origin), v.dot(points[i].p - origin));
+  for (const std::size_t i : surface.members)
+    flat.emplace_back(u.dot(points[i].p - origin), v.dot(points[i].p - origin));
   return flat;
 }
 
-/// A surface that leans is neither level nor upright: the plane of the paper's fit (SVD) must agree where the contacts determine it.
+/// A surface that leans is neither level nor upright: the plane of the paper's fit (SVD) must agree where the contacts
+/// determine it.
 bool leans(std::span<const TracePoint> points, const Surface& surface, double max_slant) {
   std::vector<Eigen::Vector3d> members;
   for (const std::size_t i : surface.members) members.push_back(points[i].p);
@@ -38,11 +41,13 @@ bool leans(std::span<const TracePoint> points, const Surface& surface, double ma
   return std::abs(plane->normal.dot(surface.normal)) < std::cos(max_slant);
 }
 
-Attempt table(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
+Attempt table(std::span<const TracePoint> points, const Surface& surface, double floor_z,
+              const LandmarkConfig& config) {
   const double height = surface.offset - floor_z;
   if (height < config.table_min_height_m || height > config.table_max_height_m)
     return {std::nullopt, "a level surface, but not at the height of a table"};
-  const auto flat = in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  const auto flat =
+      in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   const auto fit = fit_rectangle(flat, config);
   if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
   Observation seen;
@@ -97,8 +102,10 @@ Attempt wall(std::span<const TracePoint> points, const Surface& surface, const L
   return {seen, {}};
 }
 
-Attempt classify(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
-  if (leans(points, surface, config.max_slant_rad)) return {std::nullopt, "the surface leans: neither level nor upright"};
+Attempt classify(std::span<const TracePoint> points, const Surface& surface, double floor_z,
+                 const LandmarkConfig& config) {
+  if (leans(points, surface, config.max_slant_rad))
+    return {std::nullopt, "the surface leans: neither level nor upright"};
   if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
   auto contour = screen(points, surface, config);
   return contour.observation ? contour : wall(points, surface, config);
@@ -108,9 +115,10 @@ void shift(Observation& observation, std::size_t by) {
   for (auto& index : observation.contacts) index += by;
 }
 
-/// Looks for objects in points[begin, end), then in what is left of it before and after: one gesture may go from one wall to the next.
-void extract_range(std::span<const TracePoint> points, IndexRange range, double floor_z, const LandmarkConfig& config, int depth,
-                   Extraction& out) {
+/// Looks for objects in points[begin, end), then in what is left of it before and after: one gesture may go from one
+/// wall to the next.
+void extract_range(std::span<const TracePoint> points, IndexRange range, double floor_z, const LandmarkConfig& config,
+                   int depth, Extraction& out) {
   const auto part = points.subspan(range.begin, range.end - range.begin);
   if (part.size() < 8) return;
   // What is left beside an object is mostly the way to it; another object takes a while to draw.

@@ -15,10 +15,10 @@ namespace kinemap {
 
 /// A landmark seen in one trace: its closed-form values, and which contacts speak of it.
 struct Observation {
-  graph::Landmark landmark;          ///< Wall, Table or Screen
-  std::vector<std::size_t> contacts; ///< indices of the trace points on it, ascending
-  std::vector<SideLabel> labels;     ///< one for each of them; Edge::None throughout for walls
-  bool closed = false;               ///< rectangles: all four sides were drawn
+  graph::Landmark landmark;           ///< Wall, Table or Screen
+  std::vector<std::size_t> contacts;  ///< indices of the trace points on it, ascending
+  std::vector<SideLabel> labels;      ///< one for each of them; Edge::None throughout for walls
+  bool closed = false;                ///< rectangles: all four sides were drawn
 };
 
 /// What a trace turned out to be. `reason` says why nothing was found in it; nothing is dropped in silence.
@@ -27,8 +27,8 @@ struct Extraction {
   std::string reason;
 };
 
-/// Finds the objects that a trace was drawn on (paper, section IV). `points` in order of time, in a frame with z up and the floor
-/// at `floor_z`.
+/// Finds the objects that a trace was drawn on (paper, section IV). `points` in order of time, in a frame with z up and
+/// the floor at `floor_z`.
 Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config);
 
 }  // namespace kinemap

@@ -53,7 +53,9 @@ std::optional<LineFit> fit_line_robust(std::span<const Eigen::Vector2d> points, 
   // Pairs out of up to 24 evenly spaced points: enough for traces, of which at least a third lies on the line.
   constexpr std::size_t kSamples = 24;
   const std::size_t samples = std::min(kSamples, points.size());
-  const auto sample = [&](std::size_t k) { return points[k * (points.size() - 1) / std::max<std::size_t>(1, samples - 1)]; };
+  const auto sample = [&](std::size_t k) {
+    return points[k * (points.size() - 1) / std::max<std::size_t>(1, samples - 1)];
+  };
   std::optional<LineFit> best;
   double best_score = 0.0;
   for (std::size_t a = 0; a < samples; ++a) {

@@ -13,11 +13,13 @@ struct PlaneFit {
   Eigen::Vector3d normal;    ///< unit
   double offset = 0.0;       ///< m
   Eigen::Vector3d centroid;  ///< m
-  Eigen::Vector3d extent;    ///< standard deviations along the principal axes, longest first, m; the third is the residual
+  Eigen::Vector3d
+      extent;  ///< standard deviations along the principal axes, longest first, m; the third is the residual
 };
 
-/// Least-squares plane by singular value decomposition of the centred points (paper, section IV). nullopt for fewer than
-/// three points and for points that leave a direction open (coincident or collinear: second extent below `min_spread_m`).
+/// Least-squares plane by singular value decomposition of the centred points (paper, section IV). nullopt for fewer
+/// than three points and for points that leave a direction open (coincident or collinear: second extent below
+/// `min_spread_m`).
 std::optional<PlaneFit> fit_plane(std::span<const Eigen::Vector3d> points, double min_spread_m = 1e-6);
 
 /// A line in the plane with the spread of its points.
@@ -34,8 +36,8 @@ struct LineFit {
 /// Total least squares. nullopt for fewer than two points or coincident ones.
 std::optional<LineFit> fit_line(std::span<const Eigen::Vector2d> points);
 
-/// The line with most points within `tolerance_m`, refined on those; the samples are taken in a fixed pattern, so equal input gives
-/// equal output.
+/// The line with most points within `tolerance_m`, refined on those; the samples are taken in a fixed pattern, so equal
+/// input gives equal output.
 std::optional<LineFit> fit_line_robust(std::span<const Eigen::Vector2d> points, double tolerance_m);
 
 /// Angle swept by the direction from `centre` to the points, in order, rad: ±2π for one closed contour round it.

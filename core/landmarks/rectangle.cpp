@@ -56,8 +56,9 @@ std::vector<Eigen::Vector2d> tangents(Points points, double half_window_m) {
   return out;
 }
 
-/// Splits the positions of contacts that travel along one axis into the two opposite sides: {minus, plus}, either may be empty.
-/// `other_mean` is where the contacts of the crossing sides lie on this axis; it tells which side a lone one is.
+/// Splits the positions of contacts that travel along one axis into the two opposite sides: {minus, plus}, either may
+/// be empty. `other_mean` is where the contacts of the crossing sides lie on this axis; it tells which side a lone one
+/// is.
 struct Split {
   std::optional<double> minus, plus;
 };
@@ -74,15 +75,15 @@ Split split_sides(const std::vector<double>& positions, double other_mean, doubl
   return at < other_mean ? Split{at, std::nullopt} : Split{std::nullopt, at};
 }
 
-struct Bounds {  // of the rectangle in the rotated frame
+struct Bounds {                // of the rectangle in the rotated frame
   std::array<double, 4> at{};  // MinusU, PlusU, MinusV, PlusV
   std::array<bool, 4> drawn{};
 };
 
-/// Bounds in the frame turned by `heading`, from the directions of travel; the sides that were not drawn come from the ends of the trace: they
-/// are the two points farthest apart, over whose diagonal the known corner is mirrored.
-std::optional<Bounds> initial_bounds(const std::vector<Eigen::Vector2d>& local, const std::vector<Eigen::Vector2d>& travel,
-                                     const LandmarkConfig& config) {
+/// Bounds in the frame turned by `heading`, from the directions of travel; the sides that were not drawn come from the
+/// ends of the trace: they are the two points farthest apart, over whose diagonal the known corner is mirrored.
+std::optional<Bounds> initial_bounds(const std::vector<Eigen::Vector2d>& local,
+                                     const std::vector<Eigen::Vector2d>& travel, const LandmarkConfig& config) {
   std::vector<double> along_u, along_v;  // v of contacts that travel along u, and the other way round
   double mean_u = 0.0, mean_v = 0.0;
   for (std::size_t i = 0; i < local.size(); ++i) {
@@ -144,7 +145,8 @@ void assign_end_corners(Points points, RectangleFit& fit) {
   }
 }
 
-/// One Gauss-Newton step on (centre, heading, size) with Cauchy weights. Returns false when the sides leave a number open.
+/// One Gauss-Newton step on (centre, heading, size) with Cauchy weights. Returns false when the sides leave a number
+/// open.
 bool refine(Points points, RectangleFit& fit, bool free_heading) {
   Eigen::Matrix<double, 5, 5> h = Eigen::Matrix<double, 5, 5>::Zero();
   Eigen::Matrix<double, 5, 1> g = Eigen::Matrix<double, 5, 1>::Zero();
@@ -187,12 +189,16 @@ void measure_residual(Points points, RectangleFit& fit) {
 
 }  // namespace
 
-Eigen::Vector2d to_local(const RectangleFit& fit, const Eigen::Vector2d& p) { return rotation(-fit.heading) * (p - fit.centre); }
+Eigen::Vector2d to_local(const RectangleFit& fit, const Eigen::Vector2d& p) {
+  return rotation(-fit.heading) * (p - fit.centre);
+}
 
-std::optional<RectangleFit> fit_rectangle(Points points, const LandmarkConfig& config, std::optional<double> fixed_heading) {
+std::optional<RectangleFit> fit_rectangle(Points points, const LandmarkConfig& config,
+                                          std::optional<double> fixed_heading) {
   if (points.size() < 8) return std::nullopt;
   auto heading = fixed_heading;
-  if (!heading) heading = dominant_heading(points, find_corners(points, config.corner_window_m, config.corner_angle_rad));
+  if (!heading)
+    heading = dominant_heading(points, find_corners(points, config.corner_window_m, config.corner_angle_rad));
   if (!heading) return std::nullopt;
 
   const auto travel = tangents(points, 0.3 * config.corner_window_m);
@@ -206,7 +212,8 @@ std::optional<RectangleFit> fit_rectangle(Points points, const LandmarkConfig& c
 
   RectangleFit fit;
   fit.heading = *heading;
-  fit.centre = rotation(*heading) * Eigen::Vector2d(0.5 * (bounds->at[0] + bounds->at[1]), 0.5 * (bounds->at[2] + bounds->at[3]));
+  fit.centre = rotation(*heading) *
+               Eigen::Vector2d(0.5 * (bounds->at[0] + bounds->at[1]), 0.5 * (bounds->at[2] + bounds->at[3]));
   fit.size = {bounds->at[1] - bounds->at[0], bounds->at[3] - bounds->at[2]};
   fit.drawn = bounds->drawn;
   fit.closed = std::all_of(fit.drawn.begin(), fit.drawn.end(), [](bool d) { return d; });

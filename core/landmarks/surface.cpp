@@ -45,8 +45,10 @@ std::vector<std::size_t> longest_run(std::span<const TracePoint> points, const s
     if (!run.empty()) {
       const double step = (points[i].p - points[run.back()].p).norm();
       const bool goes_on = i == run.back() + 1 || (points[i].time_s - points[run.back()].time_s < 1.5 && step < 0.5);
-      if (!goes_on) run.clear(), length = 0.0;
-      else length += step;
+      if (!goes_on)
+        run.clear(), length = 0.0;
+      else
+        length += step;
     }
     run.push_back(i);
     if (length > best_length) best_length = length, best = run;
@@ -110,7 +112,8 @@ std::optional<Surface> level_surface(std::span<const TracePoint> points, const L
   if (surface.members.size() < 3) return std::nullopt;
   std::vector<double> heights;
   std::vector<Eigen::Vector2d> flat;
-  for (const std::size_t i : surface.members) heights.push_back(points[i].p.z()), flat.emplace_back(points[i].p.head<2>());
+  for (const std::size_t i : surface.members)
+    heights.push_back(points[i].p.z()), flat.emplace_back(points[i].p.head<2>());
   surface.offset = median(heights);
   // A straight level line is no level surface: it may as well be a wall traced at one height.
   const auto line = fit_line_robust(flat, config.plane_tolerance_m);
@@ -127,7 +130,8 @@ IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfi
   const std::size_t n = points.size();
   if (n < 8) return {0, n};
   const auto v = speeds(points);
-  const double usual = median({v.begin() + static_cast<std::ptrdiff_t>(n / 5), v.end() - static_cast<std::ptrdiff_t>(n / 5)});
+  const double usual =
+      median({v.begin() + static_cast<std::ptrdiff_t>(n / 5), v.end() - static_cast<std::ptrdiff_t>(n / 5)});
   const double threshold = std::max(config.reach_speed_m_per_s, 2.0 * usual);
   const double first = points.front().time_s, last = points.back().time_s;
   const std::size_t front = reach_length(

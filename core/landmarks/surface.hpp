@@ -11,7 +11,8 @@
 
 namespace kinemap {
 
-/// One position of the touching point during a trace, in any level frame that does not move (the map's, with drift still in it).
+/// One position of the touching point during a trace, in any level frame that does not move (the map's, with drift
+/// still in it).
 struct TracePoint {
   double time_s = 0.0;
   Eigen::Vector3d p;       ///< touching point, m
@@ -26,16 +27,17 @@ struct Surface {
   std::vector<std::size_t> members;  ///< indices of the points on it, ascending; one run in time, lift-offs left out
 };
 
-/// Indices [begin, end) that remain when the reach to the surface and back is cut off: at either end, a stretch of at most `reach_max_s` in
-/// which the hand moves clearly faster than it usually does, up to where it comes to rest.
+/// Indices [begin, end) that remain when the reach to the surface and back is cut off: at either end, a stretch of at
+/// most `reach_max_s` in which the hand moves clearly faster than it usually does, up to where it comes to rest.
 struct IndexRange {
   std::size_t begin = 0, end = 0;
 };
 IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfig& config);
 
-/// The level or upright surface on which most of the trace lies, with its contacts; nullopt when neither holds half of it. The
-/// suit knows the vertical to a degree, so only these two hypotheses are tried: a general plane through a nearly straight trace is
-/// not determined. Points on one straight level line count as upright (a wall traced at one height).
+/// The level or upright surface on which most of the trace lies, with its contacts; nullopt when neither holds half of
+/// it. The suit knows the vertical to a degree, so only these two hypotheses are tried: a general plane through a
+/// nearly straight trace is not determined. Points on one straight level line count as upright (a wall traced at one
+/// height).
 std::optional<Surface> find_surface(std::span<const TracePoint> points, const LandmarkConfig& config);
 
 }  // namespace kinemap

@@ -17,14 +17,15 @@ using graph::Edge;
 using graph::Landmark;
 using graph::LandmarkKind;
 
-constexpr double kOnPlane = 0.25;        // m: contacts farther from their wall do not speak of its extent
-constexpr double kMaxTurn = 0.8;         // rad: objects are not mistaken for ones that stand crosswise
-constexpr double kAlongGap = 0.3;        // m: two stretches of one wall may miss each other by so much
+constexpr double kOnPlane = 0.25;  // m: contacts farther from their wall do not speak of its extent
+constexpr double kMaxTurn = 0.8;   // rad: objects are not mistaken for ones that stand crosswise
+constexpr double kAlongGap = 0.3;  // m: two stretches of one wall may miss each other by so much
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
 
-/// What the newcomer `a` differs from landmark `b` by, as a function of their numbers, so that its Jacobian can be had numerically.
+/// What the newcomer `a` differs from landmark `b` by, as a function of their numbers, so that its Jacobian can be had
+/// numerically.
 struct Difference {
   std::function<Eigen::VectorXd(const Landmark&, const Landmark&)> of;
   Eigen::VectorXd noise;  ///< standard deviations beyond the graph's covariance
@@ -41,7 +42,8 @@ Difference wall_difference(const MapState& state, std::size_t a, const MapperCon
     const Eigen::Vector3d p = WallFrame(x).point(middle);
     return Eigen::VectorXd(Eigen::Vector2d(WallFrame(y).distance(p), wrap_angle(x.x[0] - y.x[0])));
   };
-  d.noise = Eigen::Vector2d(config.position_sigma_m, std::max(config.heading_sigma_rad, config.position_sigma_m / half));
+  d.noise =
+      Eigen::Vector2d(config.position_sigma_m, std::max(config.heading_sigma_rad, config.position_sigma_m / half));
   return d;
 }
 
@@ -71,7 +73,8 @@ Difference screen_difference(const Landmark& b, const MapperConfig::Association&
   Difference d;
   d.of = [](const Landmark& x, const Landmark& y) {
     Eigen::VectorXd e(6);
-    e << x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3]), x.x[4] - y.x[4], x.x[5] - y.x[5];
+    e << x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3]), x.x[4] - y.x[4],
+        x.x[5] - y.x[5];
     return e;
   };
   d.noise.resize(6);
@@ -94,10 +97,14 @@ Difference seat_difference(const MapperConfig::Association& config) {
 Difference difference(const MapState& state, std::size_t a, std::size_t b, const MapperConfig::Association& config) {
   const auto& landmarks = state.graph.landmarks;
   switch (landmarks[a].kind) {
-    case LandmarkKind::Wall: return wall_difference(state, a, config);
-    case LandmarkKind::Table: return table_difference(landmarks[a], landmarks[b], config);
-    case LandmarkKind::Screen: return screen_difference(landmarks[b], config);
-    case LandmarkKind::Seat: return seat_difference(config);
+    case LandmarkKind::Wall:
+      return wall_difference(state, a, config);
+    case LandmarkKind::Table:
+      return table_difference(landmarks[a], landmarks[b], config);
+    case LandmarkKind::Screen:
+      return screen_difference(landmarks[b], config);
+    case LandmarkKind::Seat:
+      return seat_difference(config);
   }
   return {};
 }
@@ -159,7 +166,8 @@ Edge turned(Edge edge, int quarter_turns) {
 }  // namespace
 
 double gate(double sigma, int dimensions) {
-  // z such that a χ²(1) variable exceeds sigma² as often as a standard normal one exceeds z; then Wilson–Hilferty for k dimensions.
+  // z such that a χ²(1) variable exceeds sigma² as often as a standard normal one exceeds z; then Wilson–Hilferty for k
+  // dimensions.
   const double tail = std::erfc(sigma / std::numbers::sqrt2);
   double lo = 0.0, hi = 10.0;
   for (int n = 0; n < 60; ++n) {

@@ -13,20 +13,22 @@ namespace kinemap {
 /// A landmark that the newcomer may be.
 struct Candidate {
   std::size_t landmark = 0;
-  int quarter_turns = 0;    ///< tables: the newcomer's axes are turned so many times 90° against the candidate's
-  double distance = 0.0;    ///< Mahalanobis distance squared of the relative marginal covariance
-  int dimensions = 0;       ///< of that distance
+  int quarter_turns = 0;  ///< tables: the newcomer's axes are turned so many times 90° against the candidate's
+  double distance = 0.0;  ///< Mahalanobis distance squared of the relative marginal covariance
+  int dimensions = 0;     ///< of that distance
 };
 
-/// Landmarks of the same kind that `newcomer` is compatible with, nearest first: the difference of their numbers is judged by the
-/// joint marginal covariance of both (drift between the visits included) plus what two traces of one object differ by anyway.
+/// Landmarks of the same kind that `newcomer` is compatible with, nearest first: the difference of their numbers is
+/// judged by the joint marginal covariance of both (drift between the visits included) plus what two traces of one
+/// object differ by anyway.
 std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
                                   const MapperConfig::Association& config);
 
 /// Makes `from` one with `candidate.landmark`: its factors refer to that landmark now, `from` becomes inactive.
 void merge(MapState& state, std::size_t from, const Candidate& candidate);
 
-/// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma` (Wilson–Hilferty).
+/// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma`
+/// (Wilson–Hilferty).
 double gate(double sigma, int dimensions);
 
 /// First and last coordinate of a wall's contacts along it (axis ẑ × n from the anchor), those on its plane; m.

@@ -56,8 +56,10 @@ bool LoopCloser::optimise(MapState& state, int iterations) const {
   options.max_iterations = iterations;
   const graph::Verdict verdict = graph::optimize(state.graph, options);
   ++state.summary.optimisations;
-  if (!verdict.usable) ++state.summary.optimisations_failed;
-  else state.summary.last_cost = verdict.final_cost;
+  if (!verdict.usable)
+    ++state.summary.optimisations_failed;
+  else
+    state.summary.last_cost = verdict.final_cost;
   return verdict.usable;
 }
 
@@ -77,7 +79,8 @@ LoopCloser::Trial LoopCloser::attempt(const MapState& state, std::size_t newcome
 
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   const auto marginals = graph::Marginals::compute(state.graph);
-  const auto found = marginals ? candidates(state, newcomer, *marginals, config_.association) : std::vector<Candidate>{};
+  const auto found =
+      marginals ? candidates(state, newcomer, *marginals, config_.association) : std::vector<Candidate>{};
   std::optional<Trial> best;
   double second = HUGE_VAL;
   for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 2); ++k) {

@@ -11,9 +11,10 @@
 
 namespace kinemap {
 
-/// Decides what a new landmark is: one that is there already (a loop closure) or one of its own. Candidates come from the relative marginal
-/// covariance; each plausible one is tried by optimising a copy of the map with the two made one, and kept only if the optimum does
-/// not contradict it. Where two candidates explain it about equally well, it stays separate until later evidence decides.
+/// Decides what a new landmark is: one that is there already (a loop closure) or one of its own. Candidates come from
+/// the relative marginal covariance; each plausible one is tried by optimising a copy of the map with the two made one,
+/// and kept only if the optimum does not contradict it. Where two candidates explain it about equally well, it stays
+/// separate until later evidence decides.
 class LoopCloser {
  public:
   explicit LoopCloser(const MapperConfig& config) : config_(config) {}
@@ -21,7 +22,8 @@ class LoopCloser {
   /// `newcomer` has just been added to `state`. True when a loop was closed; `state` is optimised then.
   bool resolve(MapState& state, std::size_t newcomer);
 
-  /// Looks once more at landmarks that were left separate although they might be another. True when some loop was closed.
+  /// Looks once more at landmarks that were left separate although they might be another. True when some loop was
+  /// closed.
   bool reconsider(MapState& state);
 
   /// Optimises with at most `iterations`. The right angles between walls are renewed first.

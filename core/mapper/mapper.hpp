@@ -11,8 +11,9 @@
 
 namespace kinemap {
 
-/// Owns the graph: adds events, extracts landmarks, associates, closes loops, optimises and publishes snapshots. A fold over events:
-/// the same events give the same map, byte for byte. Not thread-safe: one thread owns it; snapshots may go anywhere.
+/// Owns the graph: adds events, extracts landmarks, associates, closes loops, optimises and publishes snapshots. A fold
+/// over events: the same events give the same map, byte for byte. Not thread-safe: one thread owns it; snapshots may go
+/// anywhere.
 class Mapper {
  public:
   explicit Mapper(const MapperConfig& config);

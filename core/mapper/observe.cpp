@@ -14,21 +14,24 @@ using graph::LandmarkKind;
 
 constexpr double kTypicalTip = 0.18;  // m, wrist to finger tip of a wearer of whom nothing is known
 
-/// Indices into observation.contacts, thinned by distance; contacts in corners and contacts without a side are treated as they are:
-/// the former always kept, the latter left out for rectangles, of which they would only pull on the plane.
-std::vector<std::size_t> thinned(const Observation& observation, const std::vector<TracePoint>& points, double spacing) {
+/// Indices into observation.contacts, thinned by distance; contacts in corners and contacts without a side are treated
+/// as they are: the former always kept, the latter left out for rectangles, of which they would only pull on the plane.
+std::vector<std::size_t> thinned(const Observation& observation, const std::vector<TracePoint>& points,
+                                 double spacing) {
   const bool rectangle = observation.landmark.kind != LandmarkKind::Wall;
   std::vector<std::size_t> kept;
   for (std::size_t k = 0; k < observation.contacts.size(); ++k) {
     if (rectangle && observation.labels[k].edge == Edge::None) continue;
     const bool corner = observation.labels[k].corner != Edge::None;
     const auto& p = points[observation.contacts[k]].p;
-    if (corner || kept.empty() || (p - points[observation.contacts[kept.back()]].p).norm() >= spacing) kept.push_back(k);
+    if (corner || kept.empty() || (p - points[observation.contacts[kept.back()]].p).norm() >= spacing)
+      kept.push_back(k);
   }
   return kept;
 }
 
-/// Factor by which the noise of single contacts grows so that contacts on one side within the correlation time count as one.
+/// Factor by which the noise of single contacts grows so that contacts on one side within the correlation time count as
+/// one.
 std::array<double, 5> inflation(const Observation& observation, const std::vector<TracePoint>& points,
                                 const std::vector<std::size_t>& kept, double spacing, double correlation_s) {
   std::array<double, 5> count{}, duration{};
@@ -58,7 +61,8 @@ std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& gra
   points.reserve(trace.contacts.size());
   for (const auto& contact : trace.contacts) {
     const Pose& T_map_key = graph.poses[contact.key_pose];
-    points.push_back({contact.time_s, T_map_key * (contact.T_key_hand * graph.touch_points[touch].p_hand), T_map_key.p});
+    points.push_back(
+        {contact.time_s, T_map_key * (contact.T_key_hand * graph.touch_points[touch].p_hand), T_map_key.p});
   }
   return points;
 }
@@ -66,7 +70,8 @@ std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& gra
 std::size_t add_observation(const Observation& observation, const Trace& trace, const std::vector<TracePoint>& points,
                             std::size_t touch, double floor_z, const MapperConfig& config, MapState& state) {
   const std::size_t landmark = state.graph.landmarks.size();
-  const double begin_s = points[observation.contacts.front()].time_s, end_s = points[observation.contacts.back()].time_s;
+  const double begin_s = points[observation.contacts.front()].time_s,
+               end_s = points[observation.contacts.back()].time_s;
   append_landmark(observation.landmark, begin_s, end_s, floor_z, state);
   if (observation.landmark.kind == LandmarkKind::Screen)
     state.graph.landmark_priors.push_back({landmark, 6, 0.0, config.odometry.tilt_rad});
@@ -118,13 +123,17 @@ std::size_t add_seat(const Sitting& sitting, double floor_z, const MapperConfig&
   return landmark;
 }
 
-graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer, std::optional<double> stature_m) {
+graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer,
+                              std::optional<double> stature_m) {
   // In the T-pose the right hand points along its −y axis.
   Eigen::Vector3d tip(0.0, -kTypicalTip, 0.0);
   if (wearer.stature_m) stature_m = wearer.stature_m;
-  if (config.tip_m > 0.0) tip.y() = -config.tip_m;
-  else if (wearer.p_hand_fingertip) tip = *wearer.p_hand_fingertip;
-  else if (stature_m) tip.y() = -config.tip_per_stature * *stature_m;
+  if (config.tip_m > 0.0)
+    tip.y() = -config.tip_m;
+  else if (wearer.p_hand_fingertip)
+    tip = *wearer.p_hand_fingertip;
+  else if (stature_m)
+    tip.y() = -config.tip_per_stature * *stature_m;
   return {tip, tip, Eigen::Vector3d::Constant(0.02), true};
 }
 

@@ -12,18 +12,21 @@
 
 namespace kinemap {
 
-/// The contacts of a trace as points of the touching hand, in the map as the graph has it now: the drift inside the trace that is already
-/// known is taken out before a landmark is fitted.
+/// The contacts of a trace as points of the touching hand, in the map as the graph has it now: the drift inside the
+/// trace that is already known is taken out before a landmark is fitted.
 std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& graph, std::size_t touch);
 
-/// Appends the observation as a landmark of its own, with one contact factor for each thinned contact. Returns the landmark's index.
+/// Appends the observation as a landmark of its own, with one contact factor for each thinned contact. Returns the
+/// landmark's index.
 std::size_t add_observation(const Observation& observation, const Trace& trace, const std::vector<TracePoint>& points,
                             std::size_t touch, double floor_z, const MapperConfig& config, MapState& state);
 
 /// Appends a seat as a landmark of its own. Returns the landmark's index.
 std::size_t add_seat(const Sitting& sitting, double floor_z, const MapperConfig& config, MapState& state);
 
-/// Touching point of the right hand in its segment frame, m: configured, else from the suit's body points, else from the stature.
-graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer, std::optional<double> stature_m);
+/// Touching point of the right hand in its segment frame, m: configured, else from the suit's body points, else from
+/// the stature.
+graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer,
+                              std::optional<double> stature_m);
 
 }  // namespace kinemap

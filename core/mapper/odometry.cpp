@@ -31,7 +31,8 @@ graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to,
   const double heading =
       std::sqrt(squared(config.heading_rad_per_sqrt_s) * dt + squared(config.heading_rad_per_rad * to.turn_rad));
   graph::Matrix6 information = graph::Matrix6::Zero();
-  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad, 1.0 / heading;
+  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad,
+      1.0 / heading;
   return information;
 }
 
@@ -84,8 +85,10 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
     const double z = level_z_ + off_level_;
     const auto known = std::min_element(levels_.begin(), levels_.end(),
                                         [z](double a, double b) { return std::abs(a - z) < std::abs(b - z); });
-    if (std::abs(*known - z) < kSameLevel) level_z_ = *known;
-    else levels_.push_back(level_z_ = z);
+    if (std::abs(*known - z) < kSameLevel)
+      level_z_ = *known;
+    else
+      levels_.push_back(level_z_ = z);
     off_level_ = 0.0;
   }
   graph::FloorFactor floor;

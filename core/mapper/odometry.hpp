@@ -10,7 +10,8 @@
 
 namespace kinemap {
 
-/// Turns key poses into poses and factors of the graph: odometry (paper eq. 2), gravity, and the floor under the stance foot.
+/// Turns key poses into poses and factors of the graph: odometry (paper eq. 2), gravity, and the floor under the stance
+/// foot.
 class Odometry {
  public:
   explicit Odometry(const MapperConfig::Odometry& config) : config_(config) {}

@@ -32,7 +32,9 @@ Eigen::Quaterniond upright_orientation(const Eigen::Vector3d& normal, const Eige
   return Eigen::Quaterniond(r).normalized();
 }
 
-double sigma_of(const Eigen::MatrixXd& covariance, Eigen::Index k) { return std::sqrt(std::max(0.0, covariance(k, k))); }
+double sigma_of(const Eigen::MatrixXd& covariance, Eigen::Index k) {
+  return std::sqrt(std::max(0.0, covariance(k, k)));
+}
 
 Eigen::MatrixXd covariance_of(const graph::Marginals& marginals, std::span<const std::size_t> landmarks) {
   std::vector<graph::Variable> variables;
@@ -40,7 +42,8 @@ Eigen::MatrixXd covariance_of(const graph::Marginals& marginals, std::span<const
   return marginals.joint(variables);
 }
 
-/// Position, heading and the two sizes of a table, screen or seat; `heading` is the index of the heading among the numbers.
+/// Position, heading and the two sizes of a table, screen or seat; `heading` is the index of the heading among the
+/// numbers.
 void set_sigma(MapObject& object, const Eigen::MatrixXd& covariance, bool swapped) {
   object.sigma.position_m = std::sqrt(std::max(0.0, covariance.topLeftCorner<2, 2>().trace() / 2.0));
   object.sigma.heading_rad = sigma_of(covariance, 3);

@@ -17,7 +17,7 @@ struct LandmarkRecord {
   int observations = 0;
   double first_seen_s = 0.0;
   double last_seen_s = 0.0;
-  double floor_z = 0.0;    ///< of the level that it stands on, map frame, m
+  double floor_z = 0.0;  ///< of the level that it stands on, map frame, m
 };
 
 /// One visit to a landmark: its factors in the graph.
@@ -26,7 +26,7 @@ struct ObservationRecord {
   KeyPoseId key_pose = 0;         ///< in the middle of the visit
   std::size_t first_contact = 0;  ///< graph.contacts[first_contact, + contacts)
   std::size_t contacts = 0;
-  std::size_t seat = 0;           ///< index in graph.seats, for seats
+  std::size_t seat = 0;  ///< index in graph.seats, for seats
   double begin_s = 0.0;
   double end_s = 0.0;
 };

@@ -7,8 +7,8 @@
 
 namespace kinemap {
 
-/// A wall's plane as a frame: origin at the foot of its anchor, `axis` level along it with the room on the left, `normal` into the room.
-/// Going along `axis` from wall to wall goes counter-clockwise round a room.
+/// A wall's plane as a frame: origin at the foot of its anchor, `axis` level along it with the room on the left,
+/// `normal` into the room. Going along `axis` from wall to wall goes counter-clockwise round a room.
 struct WallFrame {
   explicit WallFrame(const graph::Landmark& wall)
       : normal(std::cos(wall.x[0]), std::sin(wall.x[0]), 0.0),

@@ -13,9 +13,9 @@
 namespace kinemap {
 namespace {
 
-constexpr double kMinAngle = 0.35;        // rad: flatter intersections are no corners
-constexpr double kShortening = 3.0;       // a wall that was touched beyond the corner speaks louder against it than a gap
-constexpr double kMinLength = 0.2;        // m
+constexpr double kMinAngle = 0.35;   // rad: flatter intersections are no corners
+constexpr double kShortening = 3.0;  // a wall that was touched beyond the corner speaks louder against it than a gap
+constexpr double kMinLength = 0.2;   // m
 
 struct Piece {
   WallFrame frame;
@@ -37,7 +37,8 @@ Corner corner(const Piece& a, const Piece& b, double join_max) {
   const Eigen::Vector2d s = m.inverse() * (b.frame.origin - a.frame.origin).head<2>();
   const double longer_a = s[0] - a.touched.hi, longer_b = b.touched.lo - s[1];
   const auto cost = [](double longer) { return longer >= 0.0 ? longer : -kShortening * longer; };
-  if (longer_a > join_max || longer_b > join_max || s[0] < a.touched.lo + kMinLength || s[1] > b.touched.hi - kMinLength)
+  if (longer_a > join_max || longer_b > join_max || s[0] < a.touched.lo + kMinLength ||
+      s[1] > b.touched.hi - kMinLength)
     return {};
   return {s[0], s[1], cost(longer_a) + cost(longer_b)};
 }
@@ -75,7 +76,8 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
   return walls;
 }
 
-std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall>& walls, const MapperConfig::Walls& config) {
+std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall>& walls,
+                             const MapperConfig::Walls& config) {
   std::vector<Room> rooms;
   std::vector<bool> used(walls.size(), false);
   for (std::size_t start = 0; start < walls.size(); ++start) {

@@ -20,13 +20,14 @@ struct FiniteWall {
   std::optional<std::size_t> previous;
 };
 
-/// Cuts the infinite planes of the walls at their intersections (paper, section IV). Each wall has a head and a tail (room on the left); heads are
-/// joined to tails one to one such that the walls are prolonged and shortened least in sum. A head only ever meets a tail, so outer
-/// corners, inner corners of L-shapes and the two faces of a partition come out of the same rule. An end that meets nobody stays
-/// where the hand last touched.
+/// Cuts the infinite planes of the walls at their intersections (paper, section IV). Each wall has a head and a tail
+/// (room on the left); heads are joined to tails one to one such that the walls are prolonged and shortened least in
+/// sum. A head only ever meets a tail, so outer corners, inner corners of L-shapes and the two faces of a partition
+/// come out of the same rule. An end that meets nobody stays where the hand last touched.
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config);
 
 /// Closed rings of joined walls, counter-clockwise. Ids count from 1.
-std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall>& walls, const MapperConfig::Walls& config);
+std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall>& walls,
+                             const MapperConfig::Walls& config);
 
 }  // namespace kinemap

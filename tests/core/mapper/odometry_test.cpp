@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapper/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinemap {
+namespace {
+
+KeyPose at(KeyPoseId id, double x, double z) {
+  KeyPose k;
+  k.id = id;
+  k.time_s = id;
+  k.T_odom_pelvis.p = {x, 0.0, z};
+  k.path_m = id > 0 ? 0.2 : 0.0;
+  k.p_pelvis_stance = Eigen::Vector3d(0.0, 0.1, -0.95);
+  return k;
+}
+
+TEST(Odometry, FirstKeyPoseIsTheMapFrame) {
+  Odometry odometry{{}};
+  graph::Graph graph;
+  KeyPose first = at(0, 1.5, 0.95);
+  first.T_odom_pelvis.q = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ());
+  odometry.add(first, graph);
+  ASSERT_EQ(graph.poses.size(), 1u);
+  EXPECT_EQ(graph.poses[0].p, first.T_odom_pelvis.p);
+  EXPECT_EQ(graph.priors.size(), 1u);
+  EXPECT_TRUE(graph.between.empty());
+}
+
+TEST(Odometry, VerticalDriftIsTakenOutByTheFloor) {
+  Odometry odometry{{}};
+  graph::Graph graph;
+  for (KeyPoseId i = 0; i < 50; ++i) odometry.add(at(i, 0.2 * i, 0.95 + 0.004 * i), graph);  // 20 cm over 10 m
+  EXPECT_NEAR(graph.poses.back().p.z(), 0.95, 1e-9);
+  EXPECT_NEAR(odometry.floor_z(), 0.0, 1e-9);
+  EXPECT_EQ(graph.floors.size(), 50u);
+}
+
+TEST(Odometry, AStairLeadsToAnotherLevelAndBack) {
+  Odometry odometry{{}};
+  graph::Graph graph;
+  KeyPoseId id = 0;
+  double z = 0.95, x = 0.0;
+  const auto walk = [&](int n, double rise) {
+    for (int i = 0; i < n; ++i) odometry.add(at(id++, x += 0.2, z += rise), graph);
+  };
+  walk(5, 0.0);
+  walk(16, 0.17);
+  walk(6, 0.0);
+  EXPECT_NEAR(odometry.floor_z(), 16 * 0.17, 1e-6);
+  walk(16, -0.17);
+  walk(6, 0.005);
+  EXPECT_NEAR(odometry.floor_z(), 0.0, 1e-6)
+      << "the ground floor is the ground floor again, whatever drifted on the way";
+}
+
+TEST(Odometry, NoiseGrowsWithWayTimeAndTurn) {
+  const MapperConfig::Odometry config;
+  KeyPose from = at(0, 0, 1), to = at(1, 0.2, 1);
+  const auto base = odometry_sqrt_information(from, to, config);
+  KeyPose farther = to, later = to, turned = to, restarted = to;
+  farther.path_m = 2.0;
+  later.time_s = 10.0;
+  turned.turn_rad = 3.0;
+  restarted.discontinuity = true;
+  EXPECT_LT(odometry_sqrt_information(from, farther, config)(0, 0), base(0, 0));
+  EXPECT_LT(odometry_sqrt_information(from, later, config)(5, 5), base(5, 5));
+  EXPECT_LT(odometry_sqrt_information(from, turned, config)(5, 5), base(5, 5));
+  EXPECT_LT(odometry_sqrt_information(from, restarted, config)(0, 0), 1.0);
+}
+
+}  // namespace
+}  // namespace kinemap

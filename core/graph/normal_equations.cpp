@@ -107,31 +107,32 @@ Eigen::SparseMatrix<double> BlockPattern::allocate() {
   for (const ColumnRange& c : columns_) {
     if (c.size > 0) size_at[static_cast<std::size_t>(c.start)] = c.size;
   }
+  const auto row_of = [](std::uint64_t k) { return static_cast<std::size_t>(k & 0xffffffffU); };
+  const auto col_of = [](std::uint64_t k) { return static_cast<std::size_t>(k >> 32); };
+  Eigen::Index values = 0;
+  for (const std::uint64_t k : keys_) values += Eigen::Index{size_at[row_of(k)]} * size_at[col_of(k)];
+
   Eigen::SparseMatrix<double> m(n, n);
+  m.resizeNonZeros(values);
   places_.resize(keys_.size());
-  std::vector<int> rows;
+  std::vector<int> rows;  // of one block column
   Eigen::Index offset = 0;
-  int* outer = m.outerIndexPtr();
   for (std::size_t begin = 0, end = 0; begin < keys_.size(); begin = end) {
-    const int col = static_cast<int>(keys_[begin] >> 32);
+    const std::size_t col = col_of(keys_[begin]);
     rows.clear();
-    for (; end < keys_.size() && static_cast<int>(keys_[end] >> 32) == col; ++end) {
-      const int row = static_cast<int>(keys_[end] & 0xffffffffU);
+    for (; end < keys_.size() && col_of(keys_[end]) == col; ++end) {
       places_[end].offset = offset + static_cast<Eigen::Index>(rows.size());
-      for (int k = 0; k < size_at[static_cast<std::size_t>(row)]; ++k) rows.push_back(row + k);
+      const std::size_t row = row_of(keys_[end]);
+      for (int k = 0; k < size_at[row]; ++k) rows.push_back(static_cast<int>(row) + k);
     }
     const Eigen::Index stride = static_cast<Eigen::Index>(rows.size());
     for (std::size_t k = begin; k < end; ++k) places_[k].stride = stride;
-    for (int k = 0; k < size_at[static_cast<std::size_t>(col)]; ++k)
-      outer[col + k] = static_cast<int>(offset + k * stride);
-    offset += stride * size_at[static_cast<std::size_t>(col)];
-    m.data().resize(offset);
-    for (int k = 0; k < size_at[static_cast<std::size_t>(col)]; ++k) {
-      std::copy(rows.begin(), rows.end(),
-                &m.data().index(offset - stride * (size_at[static_cast<std::size_t>(col)] - k)));
+    for (int k = 0; k < size_at[col]; ++k, offset += stride) {
+      m.outerIndexPtr()[col + static_cast<std::size_t>(k)] = static_cast<int>(offset);
+      std::copy(rows.begin(), rows.end(), m.innerIndexPtr() + offset);
     }
   }
-  outer[n] = static_cast<int>(offset);
+  m.outerIndexPtr()[n] = static_cast<int>(offset);
   std::fill_n(m.valuePtr(), offset, 0.0);
   return m;
 }

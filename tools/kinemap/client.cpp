@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/kinemap/client.hpp"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <nlohmann/json.hpp>
+
+namespace kinemap::cli {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr auto kPatience = std::chrono::seconds(5);
+constexpr std::size_t kMaxMessageBytes = std::size_t{256} << 20;  // a large building's map, with room to spare
+
+Error connection_error(const Endpoint& daemon, const error_code& code) {
+  std::string text = daemon.text() + ": " + code.message();
+  if (code == asio::error::connection_refused)
+    text += "; is kinemapd running, and is api.port " + std::to_string(daemon.port) + "?";
+  if (code == beast::error::timeout) text = daemon.text() + ": no answer within 5 s";
+  return {text};
+}
+
+/// Runs `io` until what was started on it has ended, and hands out how it ended.
+error_code wait(asio::io_context& io, const error_code& code) {
+  io.restart();
+  io.run();
+  return code;
+}
+
+error_code connect_stream(asio::io_context& io, beast::tcp_stream& stream, const Endpoint& daemon) {
+  error_code code;
+  tcp::resolver resolver(io);
+  const auto addresses = resolver.resolve(daemon.host, std::to_string(daemon.port), code);
+  if (code) return code;
+  stream.expires_after(kPatience);
+  stream.async_connect(addresses, [&](const error_code& result, const tcp::endpoint&) { code = result; });
+  return wait(io, code);
+}
+
+/// The daemon's own words for a status that is not 200: {"error": {"message": …}}.
+std::string message_of(const http::response<http::string_body>& response) {
+  const auto json = nlohmann::json::parse(response.body(), nullptr, false);
+  const nlohmann::json::json_pointer message("/error/message");
+  if (json.is_object() && json.contains(message) && json[message].is_string()) return json[message].get<std::string>();
+  return std::to_string(response.result_int()) + " " + std::string(response.reason());
+}
+
+}  // namespace
+
+Result<std::string> http_get(const Endpoint& daemon, const std::string& target) {
+  asio::io_context io;
+  beast::tcp_stream stream(io);
+  error_code code = connect_stream(io, stream, daemon);
+  if (code) return connection_error(daemon, code);
+
+  http::request<http::empty_body> request(http::verb::get, target, 11);
+  request.set(http::field::host, daemon.text());
+  request.set(http::field::user_agent, "kinemap");
+  request.set(http::field::connection, "close");
+  stream.expires_after(kPatience);
+  http::async_write(stream, request, [&](const error_code& result, std::size_t) { code = result; });
+  if (wait(io, code)) return connection_error(daemon, code);
+
+  beast::flat_buffer buffer;
+  http::response_parser<http::string_body> parser;
+  parser.body_limit(kMaxMessageBytes);
+  stream.expires_after(kPatience);
+  http::async_read(stream, buffer, parser, [&](const error_code& result, std::size_t) { code = result; });
+  if (wait(io, code)) {
+    Error error = connection_error(daemon, code);
+    if (code.category() == http::make_error_code(http::error::end_of_stream).category())
+      error.message += "; is this the API port of kinemapd?";
+    return error;
+  }
+  http::response<http::string_body> response = parser.release();
+  if (response.result() != http::status::ok) return Error{daemon.text() + target + ": " + message_of(response)};
+  return std::move(response.body());
+}
+
+class StreamClient::Impl {
+ public:
+  explicit Impl(Endpoint daemon) : daemon_(std::move(daemon)), socket_(io_) {}
+
+  ~Impl() {
+    if (!reading_) return;
+    // A read is under way: end it before what it refers to goes.
+    beast::get_lowest_layer(socket_).close();
+    io_.restart();
+    io_.run();
+  }
+
+  std::optional<Error> open(const std::string& subscribe) {
+    error_code code = connect_stream(io_, beast::get_lowest_layer(socket_), daemon_);
+    if (code) return connection_error(daemon_, code);
+    beast::get_lowest_layer(socket_).expires_never();
+    auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::client);
+    timeouts.handshake_timeout = kPatience;
+    timeouts.idle_timeout = std::chrono::seconds(30);
+    timeouts.keep_alive_pings = true;
+    socket_.set_option(timeouts);
+    socket_.read_message_max(kMaxMessageBytes);
+    socket_.async_handshake(daemon_.text(), "/api/v1/stream", [&](const error_code& result) { code = result; });
+    if (wait(io_, code)) return connection_error(daemon_, code);
+    socket_.async_write(asio::buffer(subscribe), [&](const error_code& result, std::size_t) { code = result; });
+    if (wait(io_, code)) return connection_error(daemon_, code);
+    return std::nullopt;
+  }
+
+  Result<std::optional<std::string>> next(std::chrono::milliseconds timeout) {
+    if (!reading_) {
+      reading_ = true;
+      done_ = false;
+      socket_.async_read(buffer_, [this](const error_code& result, std::size_t) {
+        result_ = result;
+        done_ = true;
+      });
+    }
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    io_.restart();
+    // Pings and timers are handlers as well: go on until the read itself has ended.
+    while (!done_ && std::chrono::steady_clock::now() < deadline) io_.run_one_until(deadline);
+    if (!done_) return std::optional<std::string>{};
+    reading_ = false;
+    if (result_) return connection_error(daemon_, result_);
+    std::string message = beast::buffers_to_string(buffer_.data());
+    buffer_.clear();
+    return std::optional<std::string>{std::move(message)};
+  }
+
+ private:
+  Endpoint daemon_;
+  asio::io_context io_;
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_;
+  error_code result_;
+  bool reading_ = false;
+  bool done_ = false;
+};
+
+Result<StreamClient> StreamClient::connect(const Endpoint& daemon, const std::string& subscribe) {
+  auto impl = std::make_unique<Impl>(daemon);
+  if (auto error = impl->open(subscribe)) return *error;
+  return StreamClient(std::move(impl));
+}
+
+StreamClient::StreamClient(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+StreamClient::~StreamClient() = default;
+StreamClient::StreamClient(StreamClient&&) noexcept = default;
+StreamClient& StreamClient::operator=(StreamClient&&) noexcept = default;
+
+Result<std::optional<std::string>> StreamClient::next(std::chrono::milliseconds timeout) {
+  return impl_->next(timeout);
+}
+
+}  // namespace kinemap::cli

@@ -40,6 +40,11 @@ Pipeline::~Pipeline() {
   solver_.request_stop();
 }
 
+bool Pipeline::offer(const SuitFrame& frame) { return frames_.push({frame, nullptr}); }
+bool Pipeline::offer(const WearerInfo& wearer) {
+  return frames_.push({{}, std::make_shared<const WearerInfo>(wearer)});
+}
+
 PipelineStats Pipeline::stats() const {
   return {tracker_stats_.get(), solver_stats_.get(), frames_.stats(),
           events_.stats(),      notices_.stats(),    events_held_back_.load(std::memory_order_relaxed)};
@@ -54,10 +59,10 @@ void Pipeline::detect(const std::stop_token& stop) {
     const auto message = frames_.pop();
     if (!message) {
       frames_.wait(ticket);
-    } else if (const auto* frame = std::get_if<SuitFrame>(&*message)) {
-      take_frame(*frame, events, stop);
+    } else if (message->wearer) {
+      send(*message->wearer, stop);
     } else {
-      send(std::get<WearerInfo>(*message), stop);
+      take_frame(message->frame, events, stop);
     }
   }
 }

@@ -76,8 +76,8 @@ class Pipeline {
 
   /// Network thread only; never waits. False, and counted, when the ring is full. Wearer information must be offered
   /// again then.
-  bool offer(const SuitFrame& frame) { return frames_.push(frame); }
-  bool offer(const WearerInfo& wearer) { return frames_.push(wearer); }
+  bool offer(const SuitFrame& frame);
+  bool offer(const WearerInfo& wearer);
 
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
@@ -88,7 +88,10 @@ class Pipeline {
   std::optional<Notice> take_notice() { return notices_.pop(); }
 
  private:
-  using SuitMessage = std::variant<SuitFrame, WearerInfo>;
+  struct SuitMessage {
+    SuitFrame frame;
+    std::shared_ptr<const WearerInfo> wearer;  ///< when set: news of the wearer, and no frame
+  };
   using MapperMessage = std::variant<Event, WearerInfo>;
 
   void detect(const std::stop_token& stop);

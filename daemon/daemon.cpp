@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/daemon.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace kinemap {
+namespace {
+
+constexpr std::array<std::string_view, 4> kReloadable{"log.level", "api.pose_rate_hz", "api.max_clients",
+                                                      "api.client_buffer_bytes"};
+
+}  // namespace
+
+SuitSink Daemon::suit_sink() {
+  return {[this](const SuitFrame& frame) { return pipeline_.offer(frame); },
+          [this](const WearerInfo& wearer) { return pipeline_.offer(wearer); }};
+}
+
+Sources Daemon::sources() {
+  return {[this] { return pipeline_.map(); }, [this] { return pipeline_.live_pose(); },
+          [this] { return receiver_->state(); }, [this] { return pipeline_.stats(); },
+          [this] { return pipeline_.take_notice(); }};
+}
+
+Started<Daemon> Daemon::start(const Config& config) {
+  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  auto daemon = std::unique_ptr<Daemon>(new Daemon(config));
+  auto receiver = Receiver::open(config.suit, config.stream, daemon->suit_sink());
+  if (auto* error = std::get_if<StartError>(&receiver)) return std::move(*error);
+  daemon->receiver_ = std::get<0>(std::move(receiver));
+  auto server = Server::open(config.api, daemon->sources(), config.suit, daemon->suit_port());
+  if (auto* error = std::get_if<StartError>(&server)) return std::move(*error);
+  daemon->server_ = std::get<0>(std::move(server));
+  spdlog::info("ready: suit on {} {} port {}, map at http://{}:{}/", config.suit.transport, config.suit.address,
+               daemon->suit_port(), config.api.address, daemon->api_port());
+  return daemon;
+}
+
+void Daemon::reconfigure(const Config& config) {
+  for (const auto& key : changed_keys(config_, config)) {
+    const bool now = std::find(kReloadable.begin(), kReloadable.end(), key) != kReloadable.end();
+    if (now)
+      spdlog::info("SIGHUP: {} has changed", key);
+    else
+      spdlog::warn("SIGHUP: {} has changed in the file and needs a restart", key);
+  }
+  spdlog::set_level(spdlog::level::from_str(config.log.level));
+  server_->reconfigure(config.api);
+  config_.log = config.log;
+  config_.api.pose_rate_hz = config.api.pose_rate_hz;
+  config_.api.max_clients = config.api.max_clients;
+  config_.api.client_buffer_bytes = config.api.client_buffer_bytes;
+  spdlog::info("SIGHUP: the configuration was read again");
+}
+
+}  // namespace kinemap

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "daemon/config.hpp"
+#include "daemon/pipeline.hpp"
+#include "daemon/receiver.hpp"
+#include "daemon/server.hpp"
+
+namespace kinemap {
+
+/// The whole daemon: suit → receiver → pipeline → server. It runs from `start` to its destruction.
+class Daemon {
+ public:
+  static Started<Daemon> start(const Config& config);
+
+  /// Takes over what can change in a running daemon (log.level, api.pose_rate_hz, api.max_clients,
+  /// api.client_buffer_bytes) and says which other changes need a restart.
+  void reconfigure(const Config& config);
+
+  [[nodiscard]] std::uint16_t api_port() const { return server_->port(); }
+  [[nodiscard]] std::uint16_t suit_port() const { return receiver_->port(); }
+
+ private:
+  explicit Daemon(const Config& config) : config_(config), pipeline_(config.tracker, config.mapper) {}
+  [[nodiscard]] SuitSink suit_sink();
+  [[nodiscard]] Sources sources();
+
+  Config config_;
+  Pipeline pipeline_;
+  std::unique_ptr<Receiver> receiver_;  // offers to pipeline_
+  std::unique_ptr<Server> server_;      // asks both; destroyed first
+};
+
+}  // namespace kinemap

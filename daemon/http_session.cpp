@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <optional>
+
+#include "daemon/web.hpp"
+
+namespace kinemap {
+namespace {
+
+constexpr std::uint32_t kHeaderLimit = 8192;
+constexpr std::uint64_t kBodyLimit = 16384;  // no request needs a body; what comes is read and ignored
+constexpr std::size_t kTargetLimit = 2048;
+constexpr std::chrono::seconds kReadTimeout{30}, kWriteTimeout{60};
+
+std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Why a request could not be read; nullopt when nobody is there to be told.
+std::optional<ApiError> read_error(ErrorCode error) {
+  if (error == http::error::header_limit)
+    return ApiError{431, "header_too_large", "the request's header is longer than 8 KiB"};
+  if (error == http::error::body_limit) return ApiError{413, "body_too_large", "requests need no body"};
+  if (error == http::error::end_of_stream || error == http::error::partial_message) return std::nullopt;
+  if (error.category() == http::make_error_code(http::error::bad_method).category())
+    return ApiError{400, "bad_request", "not an HTTP request: " + error.message()};
+  return std::nullopt;
+}
+
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot)
+      : stream_(std::move(socket)), context_(context), slot_(std::move(slot)) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kHeaderLimit);
+    parser_->body_limit(kBodyLimit);
+    stream_.expires_after(kReadTimeout);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+  }
+
+ private:
+  void on_read(ErrorCode error) {
+    if (error) {
+      const auto problem = read_error(error);
+      if (!problem) return close();
+      keep_alive_ = false;
+      ++context_.api.counts().errors;
+      return send(error_reply(*problem));
+    }
+    const auto& request = parser_->get();
+    keep_alive_ = request.keep_alive();
+    head_ = request.method() == http::verb::head;
+    if (const auto problem = refusal(request)) {
+      ++context_.api.counts().errors;
+      return send(error_reply(*problem));
+    }
+    if (beast::websocket::is_upgrade(request)) {
+      stream_.expires_never();  // the WebSocket has its own time-outs
+      return serve_stream(std::move(stream_), parser_->release(), context_, std::move(slot_));
+    }
+    send(context_.api.http(view(request.method_string()), view(request.target())));
+  }
+
+  /// What is wrong with a request before its path is looked at.
+  std::optional<ApiError> refusal(const http::request<http::string_body>& request) {
+    const auto host = view(request[http::field::host]);
+    if (context_.api.counts().connections > context_.max_clients) {
+      keep_alive_ = false;
+      ++context_.api.counts().refused;
+      return ApiError{503, "too_many_clients",
+                      "api.max_clients (" + std::to_string(context_.max_clients) + ") connections are open"};
+    }
+    if (!host_allowed(host, context_.loopback_only))
+      return ApiError{403, "forbidden_host",
+                      "this server answers to localhost only; api.address in the configuration opens it"};
+    if (request.target().size() > kTargetLimit)
+      return ApiError{414, "target_too_long", "the request's target is longer than 2 KiB"};
+    if (!beast::websocket::is_upgrade(request)) return std::nullopt;
+    const auto target = view(request.target());
+    if (target.substr(0, target.find('?')) != "/api/v1/stream")
+      return ApiError{404, "not_found", "the WebSocket is at /api/v1/stream"};
+    if (!origin_allowed(view(request[http::field::origin]), host))
+      return ApiError{403, "forbidden_origin", "pages of other hosts may not open the stream"};
+    return std::nullopt;
+  }
+
+  void send(Reply reply) {
+    reply_ = std::move(reply);
+    if (head_) return write<http::empty_body>();
+    write<http::span_body<const char>>();
+  }
+
+  template <class Body>
+  void write() {
+    auto response = std::make_shared<http::response<Body>>();
+    response->result(reply_.status);
+    response->version(11);
+    response->set(http::field::server, "kinemapd");
+    response->set(http::field::content_type, reply_.content_type);
+    response->set(http::field::cache_control, "no-store");
+    response->set("X-Content-Type-Options", "nosniff");
+    response->set("Content-Security-Policy", "default-src 'self' 'unsafe-inline'; frame-ancestors 'none'");
+    if (reply_.allow != nullptr) response->set(http::field::allow, reply_.allow);
+    response->keep_alive(keep_alive_);
+    response->content_length(reply_.body->size());
+    if constexpr (!std::is_same_v<Body, http::empty_body>)
+      response->body() = {reply_.body->data(), reply_.body->size()};
+    stream_.expires_after(kWriteTimeout);
+    http::async_write(stream_, *response, [self = shared_from_this(), response](ErrorCode error, std::size_t) {
+      if (error || !self->keep_alive_) return self->close();
+      self->read();
+    });
+  }
+
+  /// Says goodbye, then reads off what the peer still sends, so that its last answer is not lost to a reset.
+  void close() {
+    ErrorCode ignored;
+    stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
+    stream_.expires_after(std::chrono::seconds(2));
+    drain(16);
+  }
+  void drain(int reads) {
+    if (reads == 0) return;
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(4096), [self = shared_from_this(), reads](ErrorCode error, std::size_t) {
+      if (!error) self->drain(reads - 1);
+    });
+  }
+
+  beast::tcp_stream stream_;
+  WebContext& context_;
+  ConnectionSlot slot_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  Reply reply_;  // owns the text while it is being sent
+  bool keep_alive_ = false;
+  bool head_ = false;
+};
+
+}  // namespace
+
+void serve_http(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot) {
+  std::make_shared<HttpSession>(std::move(socket), context, std::move(slot))->read();
+}
+
+}  // namespace kinemap

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/server.hpp"
+
+#include <netinet/tcp.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <thread>
+
+#include "daemon/web.hpp"
+
+namespace kinemap {
+namespace {
+
+constexpr int kSendBufferBytes = 128 * 1024;      // what a stopped reader can hide in the kernel
+constexpr unsigned kUserTimeoutMs = 20000;        // unacknowledged for so long: the peer is gone
+constexpr std::chrono::milliseconds kPause{100};  // after a failed accept (no file descriptors left)
+
+}  // namespace
+
+class Server::Impl {
+ public:
+  Impl(const Config::Api& config, Sources sources, const Config::Suit& suit, std::uint16_t suit_port)
+      : api_(std::move(sources), suit, suit_port),
+        hub_(api_, config.pose_rate_hz),
+        context_{api_, hub_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes, false} {}
+  ~Impl() { io_.stop(); }
+
+  ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
+    const net::ip::tcp::endpoint endpoint(address, port);
+    context_.loopback_only = address.is_loopback();
+    ErrorCode error;
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);
+    // Connections inherit it; set before the handshake, as it bounds the window.
+    if (!error) acceptor_.set_option(net::socket_base::send_buffer_size(kSendBufferBytes), error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
+    return error;
+  }
+
+  void run() {
+    port_ = acceptor_.local_endpoint().port();
+    accept();
+    tick();
+    thread_ = std::jthread([this] { io_.run(); });
+    pthread_setname_np(thread_.native_handle(), "api");
+  }
+
+  void reconfigure(const Config::Api& config) {
+    net::post(io_, [this, config] {
+      hub_.set_pose_rate(config.pose_rate_hz);
+      context_.max_clients = static_cast<std::size_t>(config.max_clients);
+      context_.client_buffer_bytes = config.client_buffer_bytes;
+    });
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  void accept() {
+    acceptor_.async_accept([this](ErrorCode error, net::ip::tcp::socket socket) {
+      if (error == net::error::operation_aborted) return;
+      if (error) return pause(error);
+      welcome(std::move(socket));
+      accept();
+    });
+  }
+
+  void welcome(net::ip::tcp::socket socket) {
+    auto& counts = api_.counts();
+    ++counts.accepted;
+    // Beyond max_clients a client is told so; beyond twice as many there is no time for that.
+    if (counts.connections >= 2 * context_.max_clients) {
+      ++counts.refused;
+      return;
+    }
+    ErrorCode ignored;
+    socket.set_option(net::ip::tcp::no_delay(true), ignored);
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &kUserTimeoutMs, sizeof kUserTimeoutMs);
+    serve_http(std::move(socket), context_, ConnectionSlot(counts));
+  }
+
+  void pause(ErrorCode error) {
+    spdlog::warn("api: a connection could not be accepted: {}", error.message());
+    pause_.expires_after(kPause);
+    pause_.async_wait([this](ErrorCode e) {
+      if (!e) accept();
+    });
+  }
+
+  void tick() {
+    ticker_.expires_after(hub_.period());
+    ticker_.async_wait([this](ErrorCode error) {
+      if (error) return;
+      hub_.tick(std::chrono::steady_clock::now());
+      tick();
+    });
+  }
+
+  // The thread uses all of them; connections live in the handlers that io_ holds, and refer to those above it.
+  Api api_;
+  StreamHub hub_;
+  WebContext context_;
+  net::io_context io_{1};
+  net::ip::tcp::acceptor acceptor_{io_};
+  net::steady_timer ticker_{io_}, pause_{io_};
+  std::uint16_t port_ = 0;
+  std::jthread thread_;  // last: joined first
+};
+
+Started<Server> Server::open(const Config::Api& config, Sources sources, const Config::Suit& suit,
+                             std::uint16_t suit_port) {
+  auto impl = std::make_unique<Impl>(config, std::move(sources), suit, suit_port);
+  ErrorCode error;
+  const auto address = net::ip::make_address(config.address, error);
+  if (!error) error = impl->bind(address, config.port);
+  if (error) return bind_error({"TCP", config.address, config.port, "api.port", "--port"}, error);
+  impl->run();
+  return std::unique_ptr<Server>(new Server(std::move(impl)));
+}
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() = default;
+
+std::uint16_t Server::port() const { return impl_->port(); }
+void Server::reconfigure(const Config::Api& config) { impl_->reconfigure(config); }
+
+}  // namespace kinemap

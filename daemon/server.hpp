@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "daemon/api.hpp"
+#include "daemon/config.hpp"
+#include "daemon/start.hpp"
+
+namespace kinemap {
+
+/// The HTTP and WebSocket server on its own thread. It reads snapshots only: nothing on the way from the suit to the
+/// map waits for it.
+class Server {
+ public:
+  /// Binds at once; port 0 lets the kernel choose (`port()` tells). `suit` and `suit_port` are for the status page.
+  static Started<Server> open(const Config::Api& config, Sources sources, const Config::Suit& suit,
+                              std::uint16_t suit_port);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const;
+  /// Takes over what can change while it runs: pose_rate_hz, max_clients, client_buffer_bytes (for new clients). Any
+  /// thread.
+  void reconfigure(const Config::Api& config);
+
+ private:
+  class Impl;
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kinemap

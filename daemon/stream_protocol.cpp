@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/stream_protocol.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace kinemap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::vector<Topic> kAllTopics{Topic::Map, Topic::Pose, Topic::Status, Topic::Events};
+
+BadMessage bad(const std::string& message, const std::string& id = {}) { return {id, {400, "bad_message", message}}; }
+
+std::optional<Topic> topic_from(const Json& json) {
+  if (!json.is_string()) return std::nullopt;
+  const auto& name = json.get_ref<const std::string&>();
+  const auto it = std::find(kTopicNames.begin(), kTopicNames.end(), name);
+  if (it == kTopicNames.end()) return std::nullopt;
+  return static_cast<Topic>(it - kTopicNames.begin());
+}
+
+/// nullopt when "topics" is there but is no list of known topics, or is missing where it must not.
+std::optional<std::vector<Topic>> topics_of(const Json& message, bool all_by_default) {
+  const auto it = message.find("topics");
+  if (it == message.end()) return all_by_default ? std::optional(kAllTopics) : std::nullopt;
+  if (!it->is_array()) return std::nullopt;
+  std::vector<Topic> topics;
+  for (const auto& item : *it) {
+    const auto topic = topic_from(item);
+    if (!topic) return std::nullopt;
+    topics.push_back(*topic);
+  }
+  return topics;
+}
+
+/// A parameter as it would stand in a URL: numbers and strings as they are, a list with commas.
+std::optional<std::string> param_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  if (!value.is_array() || value.empty()) return std::nullopt;
+  std::string text;
+  for (const auto& item : value) {
+    const auto part = item.is_array() ? std::nullopt : param_text(item);
+    if (!part) return std::nullopt;
+    text += (text.empty() ? "" : ",") + *part;
+  }
+  return text;
+}
+
+ClientMessage query_of(const Json& message) {
+  const auto id_it = message.find("id");
+  if (id_it == message.end() || !(id_it->is_number() || id_it->is_string()))
+    return bad("a query needs an \"id\", a number or a string, which comes back with the answer");
+  std::string id = id_it->dump();
+  if (id.size() > 200) return bad("the query's id is longer than 200 bytes");
+  const auto path = message.find("path");
+  if (path == message.end() || !path->is_string())
+    return bad("a query needs a \"path\": map, objects, objects/ID, trajectory, pose or status", id);
+  StreamQuery query{std::move(id), path->get<std::string>(), {}};
+  const auto params = message.find("params");
+  if (params == message.end()) return query;
+  if (!params->is_object()) return bad("\"params\" must be an object", query.id);
+  for (const auto& [key, value] : params->items()) {
+    auto text = param_text(value);
+    if (!text)
+      return bad("parameter " + key.substr(0, 40) + " must be a number, a string or a list of these", query.id);
+    query.params.emplace_back(key, std::move(*text));
+  }
+  return query;
+}
+
+double rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
+
+}  // namespace
+
+ClientMessage parse_client_message(std::string_view text) {
+  const Json message = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (message.is_discarded() || !message.is_object()) return bad("a message is a JSON object with \"op\"");
+  const auto op_it = message.find("op");
+  const std::string op = op_it != message.end() && op_it->is_string() ? op_it->get<std::string>() : std::string();
+  constexpr const char* kTopics = "\"topics\" must be a list of: map, pose, status, events";
+  if (op == "subscribe") {
+    auto topics = topics_of(message, false);
+    return topics ? ClientMessage(Subscribe{std::move(*topics)}) : bad(kTopics);
+  }
+  if (op == "unsubscribe") {
+    auto topics = topics_of(message, true);
+    return topics ? ClientMessage(Unsubscribe{std::move(*topics)}) : bad(kTopics);
+  }
+  if (op == "query") return query_of(message);
+  return bad("\"op\" must be subscribe, unsubscribe or query");
+}
+
+std::string subscribed_text(const std::vector<Topic>& topics) {
+  Json names = Json::array();
+  for (const Topic topic : topics) names.push_back(kTopicNames[static_cast<std::size_t>(topic)]);
+  return Json{{"op", "subscribed"}, {"topics", std::move(names)}}.dump();
+}
+
+std::string result_text(const std::string& id, const std::string& data) {
+  return R"({"op":"result","id":)" + id + R"(,"data":)" + data + "}";
+}
+
+std::string stream_error_text(const std::string& id, const ApiError& error) {
+  // error_text is {"error":{…}}: its members go into this message.
+  const std::string members = error_text(error).substr(1);
+  return R"({"op":"error",)" + (id.empty() ? std::string() : "\"id\":" + id + ",") + members;
+}
+
+std::string news_text(Topic topic, const std::string& data) {
+  return std::string(R"({"op":"message","topic":")") + kTopicNames[static_cast<std::size_t>(topic)] + R"(","data":)" +
+         data + "}";
+}
+
+std::string notice_text(const Notice& notice) {
+  const bool trace = notice.kind == Notice::Kind::Trace;
+  Json json = {
+      {"event", trace ? "trace" : "sitting"}, {"begin", rounded(notice.begin_s)}, {"end", rounded(notice.end_s)}};
+  if (trace)
+    json["contacts"] = notice.contacts;
+  else
+    json["seat_height"] = rounded(notice.seat_height_m);
+  return json.dump();
+}
+
+}  // namespace kinemap

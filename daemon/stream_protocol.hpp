@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "daemon/outbox.hpp"
+#include "daemon/queries.hpp"
+
+/// The JSON messages of /api/v1/stream, both ways; daemon/README.md is the specification.
+namespace kinemap {
+
+struct Subscribe {
+  std::vector<Topic> topics;
+};
+struct Unsubscribe {
+  std::vector<Topic> topics;  ///< all of them when the client named none
+};
+struct StreamQuery {
+  std::string id;  ///< JSON text of the client's id, sent back as it came
+  std::string path;
+  Params params;
+};
+struct BadMessage {
+  std::string id;  ///< JSON text; empty when the message had none
+  ApiError error;
+};
+using ClientMessage = std::variant<Subscribe, Unsubscribe, StreamQuery, BadMessage>;
+
+/// Never throws: whatever is wrong becomes a BadMessage that says what is allowed.
+ClientMessage parse_client_message(std::string_view text);
+
+std::string subscribed_text(const std::vector<Topic>& topics);                ///< {"op":"subscribed","topics":[…]}
+std::string result_text(const std::string& id, const std::string& data);      ///< {"op":"result","id":…,"data":…}
+std::string stream_error_text(const std::string& id, const ApiError& error);  ///< {"op":"error","id":…,"error":{…}}
+std::string news_text(Topic topic, const std::string& data);  ///< {"op":"message","topic":…,"data":…}
+std::string notice_text(const Notice& notice);                ///< data of the topic "events"
+
+}  // namespace kinemap

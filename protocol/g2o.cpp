@@ -31,16 +31,18 @@ Matrix6 quaternion_scale() {
   return s;
 }
 
-/// Upper U with Ω = UᵀU. An Ω that is not positive definite is first moved to the nearest one with eigenvalues ≥ 1e-9
-/// of the largest.
+/// Eigenvalues below this part of the largest are taken as not positive: files carry six digits, so that what is left
+/// there is rounding.
+constexpr double kSmallestEigenvalue = 1e-9;
+
+/// Upper U with Ω = UᵀU. An Ω that is not positive definite is first moved to the nearest matrix that is.
 std::optional<Matrix6> upper_factor(const Matrix6& information, bool& clamped) {
-  const Eigen::LLT<Matrix6> llt(information);
-  clamped = llt.info() != Eigen::Success;
-  if (!clamped) return Matrix6(llt.matrixU());
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(information);
-  const double largest = eigen.eigenvalues().maxCoeff();
-  if (!(largest > 0.0)) return std::nullopt;
-  const auto roots = eigen.eigenvalues().cwiseMax(1e-9 * largest).cwiseSqrt();
+  const double smallest = kSmallestEigenvalue * eigen.eigenvalues().maxCoeff();
+  if (!(smallest > 0.0)) return std::nullopt;
+  clamped = eigen.eigenvalues().minCoeff() < smallest;
+  if (!clamped) return Matrix6(information.llt().matrixU());
+  const Eigen::Matrix<double, 6, 1> roots = eigen.eigenvalues().cwiseMax(smallest).cwiseSqrt();
   const Matrix6 root = roots.asDiagonal() * eigen.eigenvectors().transpose();
   return Matrix6(root.householderQr().matrixQR().triangularView<Eigen::Upper>());
 }

@@ -22,9 +22,10 @@ namespace kinemap {
 struct G2oGraph {
   graph::Graph graph;  ///< poses by ascending id, between factors in the order of the file, one prior per FIX
   std::vector<std::int64_t> ids;  ///< id in the file of graph.poses[k]
-  std::size_t clamped =
-      0;  ///< edges whose information was not positive definite; negative eigenvalues were raised to nearly 0
-  std::vector<std::size_t> clamped_lines;      ///< the first few of them
+  /// Edges whose information was not positive definite (to 1e-9 of its largest eigenvalue) and was moved to the nearest
+  /// that is.
+  std::size_t clamped = 0;
+  std::vector<std::size_t> clamped_lines;      ///< the first ten of them
   std::map<std::string, std::size_t> skipped;  ///< lines left out, by tag
 };
 

@@ -16,11 +16,11 @@ using Progress = std::function<void(double)>;
 
 /// What a recording contained, after it was read to the end.
 struct RecordingSummary {
-  std::string format;               ///< "pcap" or "mvnx"
+  std::string format;  ///< "pcap" or "mvnx"
   WearerInfo wearer;
   double rate_hz = 0.0;
   double duration_s = 0.0;
-  AssemblerStats stream;            ///< for .mvnx only `frames` and the like are used
+  AssemblerStats stream;              ///< for .mvnx only `frames` and the like are used
   std::vector<std::string> warnings;  ///< for people: a truncated last packet, a refused stream, …
 };
 
@@ -30,9 +30,10 @@ struct RecordingSink {
   std::function<void(const WearerInfo&)> on_wearer;
 };
 
-/// Reads a .pcap or .mvnx to its end (told apart by content, not by name), through the same Assembler as a live stream. Memory does not
-/// grow with the file. An Error names the path and the byte or line; a recording without a mappable wearer is an Error too.
-Result<RecordingSummary> read_recording(const std::string& path, const AssemblerConfig& config, const RecordingSink& sink,
-                                        const Progress& progress = {});
+/// Reads a .pcap or .mvnx to its end (told apart by content, not by name), through the same Assembler as a live stream.
+/// Memory does not grow with the file. An Error names the path and the byte or line; a recording without a mappable
+/// wearer is an Error too.
+Result<RecordingSummary> read_recording(const std::string& path, const AssemblerConfig& config,
+                                        const RecordingSink& sink, const Progress& progress = {});
 
 }  // namespace kinemap

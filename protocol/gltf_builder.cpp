@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/gltf_builder.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace kinemap::gltf {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "protocol/g2o.hpp"
 #include "protocol/json_text.hpp"
 #include "tools/kinemap/batch.hpp"
 #include "tools/kinemap/command.hpp"
@@ -100,8 +99,7 @@ int build(const Options& options) {
   }();
   if (!result) return fail("build", result.error());
   for (const std::string& warning : result->recording.warnings) fail("build", "warning: " + warning);
-  if (auto error = write_map_files(options.out, *result->map, g2o_text(result->graph)))
-    return fail("build", error->message);
+  if (auto error = write_map_files(options.out, *result->map, result->graph)) return fail("build", error->message);
 
   if (options.json) return print("build", pretty_text(json_report(*result, options.out)));
   const double total = result->times.total_s();

@@ -55,8 +55,15 @@ std::optional<Error> write_file(const std::string& path, const std::string& cont
   std::optional<Error> error;
   if (!written) error = errno_error(path, "cannot be written");
   if (::close(file) != 0 && !error) error = errno_error(path, "cannot be written");
-  if (!error && ::rename(temporary.c_str(), path.c_str()) != 0) error = errno_error(path, "cannot be replaced");
-  if (error) ::unlink(temporary.c_str());
+  if (!error) return replace_file(temporary, path);
+  ::unlink(temporary.c_str());
+  return error;
+}
+
+std::optional<Error> replace_file(const std::string& temporary, const std::string& path) {
+  if (::rename(temporary.c_str(), path.c_str()) == 0) return std::nullopt;
+  Error error = errno_error(path, "cannot be replaced");
+  ::unlink(temporary.c_str());
   return error;
 }
 

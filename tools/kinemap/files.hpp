@@ -15,6 +15,9 @@ Result<std::string> read_file(const std::string& path);
 /// over `path`.
 std::optional<Error> write_file(const std::string& path, const std::string& contents);
 
+/// Renames a finished temporary file over `path`; removes it when that fails.
+std::optional<Error> replace_file(const std::string& temporary, const std::string& path);
+
 /// Makes the directory (and its parents) where it is missing, and checks that files can be made in it: before hours of
 /// work, not after.
 std::optional<Error> make_output_directory(const std::string& path);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "protocol/g2o.hpp"
 #include "protocol/gltf.hpp"
 #include "protocol/map_json.hpp"
 #include "protocol/tum.hpp"
@@ -43,14 +44,17 @@ std::optional<Error> read_trajectory(const fs::path& directory, MapSnapshot& map
 
 }  // namespace
 
-std::optional<Error> write_map_files(const std::string& directory, const MapSnapshot& map, const std::string& g2o) {
+std::optional<Error> write_map_files(const std::string& directory, const MapSnapshot& map, const graph::Graph& graph) {
+  const fs::path base(directory);
+  const std::string unfinished = (base / ".graph.g2o.new").string();
+  if (auto error = write_g2o(unfinished, graph)) return error;
+  if (auto error = replace_file(unfinished, (base / "graph.g2o").string())) return error;
   const std::pair<const char*, std::string> files[] = {{"trajectory.tum", optimised_tum(map)},
                                                        {"odometry.tum", odometry_tum(map)},
-                                                       {"graph.g2o", g2o},
                                                        {"scene.glb", glb_bytes(map)},
                                                        {"map.json", map_text(map)}};
   for (const auto& [name, contents] : files)
-    if (auto error = write_file((fs::path(directory) / name).string(), contents)) return error;
+    if (auto error = write_file((base / name).string(), contents)) return error;
   return std::nullopt;
 }
 

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/performer.hpp"
+
+namespace kinemap::sim {
+
+namespace {
+
+constexpr double kStraight = 0.985;  ///< part of its length to which a standing leg is stretched
+constexpr double kArmReach = 0.93;   ///< part of the arm's length beyond which one leans instead
+constexpr double kMaxLean = 1.0;     ///< rad
+
+double time_of(const Score& score, std::size_t frame) { return static_cast<double>(frame) / score.rate_hz; }
+
+/// Largest value within ± `half` samples.
+std::vector<double> spread_max(const std::vector<double>& values, std::size_t half) {
+  std::vector<double> out(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t a = i > half ? i - half : 0, b = std::min(values.size(), i + half + 1);
+    out[i] = *std::max_element(values.begin() + static_cast<long>(a), values.begin() + static_cast<long>(b));
+  }
+  return out;
+}
+
+}  // namespace
+
+Performer::Performer(const Score& score, const Gait& gait, const Wearer& wearer, Random& random)
+    : score_(score), gait_(gait), wearer_(wearer), trunk_(score.frames()), touch_(score.frames(), nullptr) {
+  // Between two touches the hand comes from the one before and goes to the one after: hold the nearer.
+  for (std::size_t k = 0; k < score.touches.size(); ++k) {
+    const TouchRun& run = score.touches[k];
+    const std::size_t end = run.first + run.points.size();
+    const std::size_t from =
+        k == 0 ? 0 : (score.touches[k - 1].first + score.touches[k - 1].points.size() + run.first) / 2;
+    const std::size_t to = k + 1 == score.touches.size() ? frames() : (end + score.touches[k + 1].first) / 2;
+    for (std::size_t i = from; i < std::min(to, frames()); ++i) {
+      touch_[i] = &run.points[std::clamp(i, run.first, end - 1) - run.first];
+    }
+  }
+  plan_sway(random);
+  plan_reach();
+  plan_height();
+}
+
+const TouchPoint* Performer::touch_at(std::size_t frame) const { return touch_[frame]; }
+
+void Performer::plan_sway(Random& random) {
+  std::vector<double> weight(frames());
+  std::vector<double> tempo(frames());
+  std::vector<Vec2> idle(frames());
+  Wander x(0.004, 1.5, random), y(0.005, 1.8, random);
+  const auto window = static_cast<std::size_t>(0.5 * score_.rate_hz);
+  for (std::size_t i = 0; i < frames(); ++i) {
+    const bool right = gait_.feet[0][i].planted, left = gait_.feet[1][i].planted;
+    weight[i] = right == left ? 0.0 : left ? 1.0 : -1.0;
+    const std::size_t a = i > window ? i - window : 0, b = std::min(frames() - 1, i + window);
+    tempo[i] =
+        std::min(1.0, (score_.ground[b] - score_.ground[a]).norm() / (static_cast<double>(b - a) / score_.rate_hz));
+    idle[i] = Vec2(x.step(1.0 / score_.rate_hz, random), y.step(1.0 / score_.rate_hz, random));
+  }
+  smooth_samples(weight, 0.14 * score_.rate_hz);
+  smooth_samples(idle, 0.2 * score_.rate_hz);
+  for (std::size_t i = 0; i < frames(); ++i) {
+    Trunk& t = trunk_[i];
+    t.tempo = tempo[i];
+    t.sway = left_of(direction(score_.heading[i])) * 0.022 * weight[i] + idle[i];
+    t.swing_roll = 0.04 * weight[i] * tempo[i];
+    // The pelvis turns with the leg that is in front.
+    const Vec2 forward = direction(score_.heading[i]);
+    const Vec3 apart = ankle(Side::Left, i) - ankle(Side::Right, i);
+    t.swing_yaw = -0.16 * std::clamp(apart.x() * forward.x() + apart.y() * forward.y(), -0.5, 0.5) * tempo[i];
+  }
+}
+
+void Performer::plan_reach() {
+  const double stand = wearer_.body.ankle_height + kStraight * (wearer_.body.hip_height() - wearer_.body.ankle_height);
+  std::vector<double> lean(frames(), 0.0), twist(frames(), 0.0);
+  for (std::size_t i = 0; i < frames(); ++i) {
+    const double t = time_of(score_, i);
+    trunk_[i].height = stand - score_.drop.at(t);
+    trunk_[i].twist = score_.twist.at(t);
+    lean[i] = 0.03 + score_.lean.at(t);
+    const auto arm = score_.right.at(t);
+    if (arm.to->anchor != ArmGoal::Anchor::Touch || touch_at(i) == nullptr) continue;
+    const Vec3 d = touch_at(i)->p - lift(score_.ground[i], 0);
+    const double bearing = wrapped(std::atan2(d.y(), d.x()) - score_.heading[i]);
+    twist[i] = arm.weight * std::clamp(0.5 * (bearing + 0.35), -0.5, 0.5);
+    lean[i] = std::max(lean[i], arm.weight * needed_lean(i));
+  }
+  smooth_samples(twist, 0.3 * score_.rate_hz);
+  lean = spread_max(lean, static_cast<std::size_t>(0.3 * score_.rate_hz));
+  smooth_samples(lean, 0.18 * score_.rate_hz);
+  for (std::size_t i = 0; i < frames(); ++i) {
+    trunk_[i].lean = lean[i];
+    trunk_[i].twist += twist[i];
+  }
+}
+
+double Performer::needed_lean(std::size_t frame) const {
+  const double reach = kArmReach * (wearer_.body.upper_arm(Side::Right) + wearer_.body.forearm(Side::Right));
+  const auto missing = [&](double lean) {
+    Pose23 pose;
+    place_trunk(pose, frame, lean, trunk_[frame].twist);
+    place_chain(wearer_.body, pose, kRightShoulder, kRightUpperArm);
+    const Vec3 shoulder = pose[kRightUpperArm].p;
+    return (aim_for_touch(*touch_at(frame), shoulder).wrist - shoulder).norm() - reach;
+  };
+  if (missing(0.03) <= 0.0) return 0.03;
+  double low = 0.03, high = kMaxLean;
+  for (int i = 0; i < 9; ++i) {
+    const double middle = (low + high) / 2;
+    (missing(middle) > 0.0 ? low : high) = middle;
+  }
+  return high;
+}
+
+void Performer::plan_height() {
+  const Body& body = wearer_.body;
+  const double leg = 0.995 * (body.hip_height() - body.ankle_height);
+  std::vector<double> limit(frames()), height(frames());
+  for (std::size_t i = 0; i < frames(); ++i) {
+    limit[i] = trunk_[i].height;
+    height[i] = limit[i];
+    if (score_.kneel.at(time_of(score_, i)) > 0.0) continue;
+    Pose23 pose;
+    place_trunk(pose, i, trunk_[i].lean, trunk_[i].twist);
+    for (const Side side : {Side::Right, Side::Left}) {
+      const Bone thigh = side == Side::Right ? kRightUpperLeg : kLeftUpperLeg;
+      const Vec3 hip = pose[kPelvis].q * body.offset[thigh];
+      const Vec3 d = ankle(side, i) - pose[kPelvis].p - hip;
+      const double up2 = leg * leg - d.x() * d.x() - d.y() * d.y();
+      limit[i] = std::min(limit[i], ankle(side, i).z() + std::sqrt(std::max(up2, 0.2 * leg * leg)) - hip.z());
+    }
+    height[i] = limit[i];
+  }
+  smooth_samples(height, 0.05 * score_.rate_hz);
+  for (std::size_t i = 0; i < frames(); ++i) trunk_[i].height = std::min(height[i], limit[i]);
+}
+
+Vec3 Performer::ankle(Side side, std::size_t frame) const {
+  const FootState& foot = gait_.feet[side == Side::Left ? 1 : 0][frame];
+  const Vec3& to_ball = wearer_.body.offset[side == Side::Left ? kLeftToe : kRightToe];
+  return foot.ball - about_z(foot.heading) * (about_y(foot.pitch) * to_ball);
+}
+
+void Performer::place_trunk(Pose23& pose, std::size_t i, double lean, double twist) const {
+  const double t = time_of(score_, i);
+  const Trunk& trunk = trunk_[i];
+  // Bending forward, the hips go back, or one would fall.
+  const double shift = score_.shift.at(t) - 0.10 * std::sin(std::max(0.0, lean - 0.03));
+  const double heading = score_.heading[i];
+  pose[kPelvis].p = lift(score_.ground[i] + direction(heading) * shift + trunk.sway, trunk.height);
+  pose[kPelvis].q =
+      about_z(heading + trunk.swing_yaw) * about_y(score_.pelvis_pitch.at(t) + 0.4 * lean) * about_x(trunk.swing_roll);
+  const Quat chest = about_z(heading + twist - 0.6 * trunk.swing_yaw) * about_y(lean);
+  const Quat head = about_z(heading + 1.1 * twist) * about_y(0.08 + 0.5 * lean);
+  pose[kL5].q = pose[kPelvis].q.slerp(0.3, chest);
+  pose[kL3].q = pose[kPelvis].q.slerp(0.55, chest);
+  pose[kT12].q = pose[kPelvis].q.slerp(0.8, chest);
+  pose[kT8].q = chest;
+  pose[kNeck].q = chest.slerp(0.5, head);
+  pose[kHead].q = head;
+  pose[kRightShoulder].q = pose[kLeftShoulder].q = chest;
+  place_chain(wearer_.body, pose, kL5, kHead);
+}
+
+Performer::ArmAim Performer::aim_for_touch(const TouchPoint& touch, const Vec3& shoulder) const {
+  // Fingers point partly where they should and partly where the arm points anyway; a flat palm has no choice.
+  const double own = wearer_.palm ? 0.0 : 0.45;
+  const Vec3 fingers = (1.0 - own) * touch.fingers + own * (touch.p - shoulder).normalized();
+  const Quat hand = hand_orientation(Side::Right, fingers, touch.palm);
+  return {touch.p - hand * wearer_.p_hand_touch, Vec3::Zero(), hand};
+}
+
+Performer::ArmAim Performer::aim(const Pose23& pose, Side side, const ArmGoal& goal, std::size_t frame) const {
+  const Vec3 shoulder = pose[side == Side::Right ? kRightUpperArm : kLeftUpperArm].p;
+  const Quat upright = about_z(heading_of(Vec2((pose[kT8].q * Vec3::UnitX()).head<2>())));
+  Placed anchor;
+  switch (goal.anchor) {
+    case ArmGoal::Anchor::Shoulder:
+      anchor = {shoulder, upright};
+      break;
+    case ArmGoal::Anchor::Pelvis:
+      anchor = pose[kPelvis];
+      break;
+    case ArmGoal::Anchor::Chest:
+      anchor = pose[kT8];
+      break;
+    case ArmGoal::Anchor::Head:
+      anchor = pose[kHead];
+      break;
+    case ArmGoal::Anchor::Ground:
+      anchor = {pose[kPelvis].p, about_z(score_.heading[frame])};
+      break;
+    case ArmGoal::Anchor::World:
+      anchor = {Vec3::Zero(), Quat::Identity()};
+      break;
+    case ArmGoal::Anchor::Touch: {
+      ArmAim touch = aim_for_touch(*touch_at(frame), shoulder);
+      touch.elbow = upright * goal.elbow;
+      return touch;
+    }
+  }
+  Quat swing = Quat::Identity();
+  if (goal.swing > 0.0) {
+    // Arms swing against the legs of their side.
+    const Vec3 apart = ankle(Side::Left, frame) - ankle(Side::Right, frame);
+    const double stride = about_z(-score_.heading[frame]).operator*(apart).x();
+    swing = about_y(goal.swing * lateral(side) * 0.6 * std::clamp(stride, -0.6, 0.6) * trunk_[frame].tempo);
+  }
+  const Quat q = anchor.q * swing;
+  return {anchor.p + q * goal.wrist, anchor.q * goal.elbow, hand_orientation(side, q * goal.fingers, q * goal.palm)};
+}
+
+void Performer::place_arm(Pose23& pose, Side side, std::size_t frame) const {
+  const auto blend = (side == Side::Right ? score_.right : score_.left).at(time_of(score_, frame));
+  place_chain(wearer_.body, pose, side == Side::Right ? kRightShoulder : kLeftShoulder,
+              side == Side::Right ? kRightUpperArm : kLeftUpperArm);
+  ArmAim to = aim(pose, side, *blend.to, frame);
+  if (blend.weight < 1.0) {
+    const ArmAim from = aim(pose, side, *blend.from, frame);
+    const double w = blend.weight;
+    to.wrist = from.wrist + (to.wrist - from.wrist) * w;
+    // A hand is raised a little on its way to a surface or off it.
+    const bool touch = blend.to->anchor == ArmGoal::Anchor::Touch || blend.from->anchor == ArmGoal::Anchor::Touch;
+    if (touch) to.wrist.z() += 0.07 * std::sin(kPi * w);
+    to.elbow = from.elbow.normalized() * (1.0 - w) + to.elbow.normalized() * w;
+    to.hand = from.hand.slerp(w, to.hand);
+  }
+  solve_arm(wearer_.body, pose, side, to.wrist, to.elbow, to.hand);
+}
+
+void Performer::place_leg(Pose23& pose, Side side, std::size_t frame) const {
+  const FootState& foot = gait_.feet[side == Side::Left ? 1 : 0][frame];
+  const std::size_t bone = side == Side::Left ? kLeftFoot : kRightFoot;
+  const double kneel = score_.kneel.at(time_of(score_, frame));
+  const Quat level = about_z(score_.heading[frame]);
+  Vec3 target = ankle(side, frame);
+  Quat orientation = about_z(foot.heading) * about_y(foot.pitch);
+  const Vec3 forward = level * Vec3(1.0, 0.12 * lateral(side), 0.35);
+  if (kneel > 0.0) {  // shank on the floor behind, toes bent
+    const Vec3 hip =
+        pose[kPelvis].p + pose[kPelvis].q * wearer_.body.offset[side == Side::Left ? kLeftUpperLeg : kRightUpperLeg];
+    const Vec3 behind = level * Vec3(-0.97 * wearer_.body.shank(side), 0, 0);
+    target = target * (1.0 - kneel) + Vec3(hip.x() + behind.x(), hip.y() + behind.y(), 0.09) * kneel;
+    orientation = orientation.slerp(kneel, level * about_y(1.2));
+  }
+  solve_leg(wearer_.body, pose, side, target, forward);
+  pose[bone].q = orientation;
+  // The toes stay flat while the heel rises.
+  pose[bone + 1].q = foot.planted && kneel == 0.0 ? about_z(foot.heading) : orientation;
+  place_chain(wearer_.body, pose, bone, bone + 1);
+}
+
+Vec3 Performer::pelvis(std::size_t frame) const {
+  Pose23 pose;
+  place_trunk(pose, frame, trunk_[frame].lean, trunk_[frame].twist);
+  return pose[kPelvis].p;
+}
+
+Pose23 Performer::pose(std::size_t frame) const {
+  Pose23 pose;
+  place_trunk(pose, frame, trunk_[frame].lean, trunk_[frame].twist);
+  place_arm(pose, Side::Right, frame);
+  place_arm(pose, Side::Left, frame);
+  place_leg(pose, Side::Right, frame);
+  place_leg(pose, Side::Left, frame);
+  return pose;
+}
+
+}  // namespace kinemap::sim

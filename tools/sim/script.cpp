@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/sim/script.hpp"
+
+#include "tools/sim/activities.hpp"
+#include "tools/sim/tracing.hpp"
+
+namespace kinemap::sim {
+
+namespace {
+
+constexpr double kShortest_s = 180.0, kLongest_s = 352.0;
+
+/// Something to visit: which list, which index.
+struct Stop {
+  enum class Kind : std::uint8_t { Wall, Table, Screen, Chair } kind = Kind::Wall;
+  std::size_t index = 0;
+  int id = 0;
+  int room = 0;
+  Vec2 place;
+};
+
+class Tour {
+ public:
+  Tour(const SimOptions& options, const Building& building, const Wearer& wearer, Random& random)
+      : options_(options), building_(building), random_(random), composer_(options, building, wearer, random) {
+    collect();
+    ccw_.resize(building.rooms.size());
+    next_closure_ = closure_spacing();
+    next_distractor_s_ = random_.uniform(20, 45);
+  }
+
+  Script run() {
+    begin();
+    const int rounds = options_.rounds ? *options_.rounds : random_.integer(2, 3);
+    std::vector<double> ends;
+    for (int round = 0; round < rounds || (composer_.now() < kShortest_s && !options_.rounds); ++round) {
+      if (round > 0 && composer_.now() > kLongest_s - 20.0) break;
+      go_round(round, rounds);
+      ends.push_back(composer_.now());
+    }
+    composer_.stand(2.0);
+    return {std::move(composer_.score()), visited_, ends};
+  }
+
+ private:
+  void collect() {
+    for (std::size_t i = 0; i < building_.walls.size(); ++i) {
+      const auto& w = building_.walls[i];
+      stops_.push_back({Stop::Kind::Wall, i, w.id, w.room, (w.a + w.b) / 2});
+    }
+    for (std::size_t i = 0; i < building_.tables.size(); ++i) {
+      const auto& t = building_.tables[i];
+      stops_.push_back({Stop::Kind::Table, i, t.id, t.room, t.top.centre});
+    }
+    for (std::size_t i = 0; i < building_.screens.size(); ++i) {
+      const auto& s = building_.screens[i];
+      stops_.push_back({Stop::Kind::Screen, i, s.id, s.room, s.centre.head<2>()});
+    }
+    for (std::size_t i = 0; i < building_.chairs.size(); ++i) {
+      const auto& c = building_.chairs[i];
+      stops_.push_back({Stop::Kind::Chair, i, c.id, c.room, c.seat});
+    }
+  }
+
+  /// Stands still for the suit to settle, somewhere with room around.
+  void begin() {
+    Vec2 best = building_.rooms[0].middle();
+    double most = -1.0;
+    for (int i = 0; i < 60; ++i) {
+      const Vec2 p = building_.rooms[0].middle() + Vec2(random_.uniform(-1.5, 1.5), random_.uniform(-1.5, 1.5));
+      const double c = building_.clearance(p);
+      if (c > most) most = c, best = p;
+    }
+    home_ = best;
+    composer_.follow_from(best, random_.integer(0, 3) * kPi / 2 + random_.normal(0.1));
+    composer_.stand(random_.uniform(2.2, 3.2));
+  }
+
+  double closure_spacing() {
+    return options_.closure_spacing_m ? *options_.closure_spacing_m : random_.uniform(8.0, 25.0);
+  }
+
+  /// The stops of a room in the order of a way round it, from where the wearer is.
+  std::vector<Stop> in_order(int room) {
+    std::vector<Stop> stops;
+    for (const auto& s : stops_) {
+      if (s.room == room) stops.push_back(s);
+    }
+    const Vec2 middle = building_.rooms[static_cast<std::size_t>(room)].middle();
+    const double start = heading_of(composer_.position() - middle),
+                 sense = ccw_[static_cast<std::size_t>(room)] ? 1.0 : -1.0;
+    const auto key = [&](const Stop& s) {
+      const double angle = std::fmod(sense * (heading_of(s.place - middle) - start) + 4 * kPi, 2 * kPi);
+      return angle;
+    };
+    std::stable_sort(stops.begin(), stops.end(), [&](const Stop& a, const Stop& b) { return key(a) < key(b); });
+    return stops;
+  }
+
+  void go_round(int round, int rounds) {
+    // In later rounds as much as time allows; in the first nearly everything.
+    const double left_s = kLongest_s - composer_.now(), rounds_left = std::max(1, rounds - round);
+    const double share = round == 0 ? 0.97 : std::clamp(left_s / rounds_left / first_round_s_, 0.2, 0.95);
+    std::vector<int> rooms;
+    for (std::size_t i = 0; i < building_.rooms.size(); ++i) rooms.push_back(static_cast<int>(i));
+    if (round % 2 == 1) std::reverse(rooms.begin(), rooms.end());
+    for (const int room : rooms) {
+      ccw_[static_cast<std::size_t>(room)] = random_.chance(0.7);
+      for (const auto& stop : in_order(room)) {
+        const bool wall = stop.kind == Stop::Kind::Wall;
+        if (composer_.now() > kLongest_s - 15.0 || !random_.chance(wall && round == 0 ? 1.0 : share)) continue;
+        if (round == 0) close_loop(stop);
+        maybe_distract();
+        visit(stop, false);
+        if (round == 0) visited_.insert(touched_.begin(), touched_.end());
+      }
+    }
+    if (round == 0) first_round_s_ = std::max(30.0, composer_.now());
+    if (composer_.now() < kLongest_s) composer_.walk_to(home_, std::nullopt);
+  }
+
+  /// Touches the nearest known object again when it is time to.
+  void close_loop(const Stop& coming) {
+    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2) return;
+    const Stop* best = nullptr;
+    double least = 1e9;
+    for (const auto& s : stops_) {
+      if (s.id == coming.id || s.id == latest_ || s.room != coming.room || s.kind == Stop::Kind::Chair ||
+          touched_.count(s.id) == 0)
+        continue;
+      const double d = (s.place - composer_.position()).norm() - (s.kind == Stop::Kind::Wall ? 0.0 : 0.5);
+      if (d < least) least = d, best = &s;
+    }
+    if (best == nullptr) return;
+    visit(*best, true);
+    next_closure_ = closure_spacing();
+  }
+
+  void maybe_distract() {
+    if (!options_.distractors || composer_.now() < next_distractor_s_) return;
+    distract(composer_);
+    next_distractor_s_ = composer_.now() + random_.uniform(20.0, 60.0);
+  }
+
+  void visit(const Stop& stop, bool brief) {
+    bool done = false;
+    switch (stop.kind) {
+      case Stop::Kind::Wall: {
+        const bool at_right = ccw_[static_cast<std::size_t>(stop.room)] ? random_.chance(0.85) : random_.chance(0.4);
+        done = trace_wall(composer_, building_.walls[stop.index], at_right, brief);
+        break;
+      }
+      case Stop::Kind::Table:
+        done = trace_table(composer_, building_.tables[stop.index]);
+        break;
+      case Stop::Kind::Screen:
+        done = trace_screen(composer_, building_.screens[stop.index]);
+        break;
+      case Stop::Kind::Chair:
+        done = sit_on(composer_, building_.chairs[stop.index]);
+        break;
+    }
+    if (!done) return;
+    latest_ = stop.id;
+    if (!touched_.insert(stop.id).second) last_closure_ = composer_.walked();
+  }
+
+  const SimOptions& options_;
+  const Building& building_;
+  Random& random_;
+  Composer composer_;
+  std::vector<Stop> stops_;
+  std::vector<bool> ccw_;
+  std::set<int> touched_, visited_;
+  Vec2 home_{0, 0};
+  int latest_ = 0;
+  double last_closure_ = 0.0, next_closure_ = 15.0;
+  double next_distractor_s_ = 0.0, first_round_s_ = 0.0;
+};
+
+/// The body has mass: no jerks on its way over the floor.
+void smooth_way(Score& score) {
+  smooth_samples(score.ground, 0.12 * score.rate_hz);
+  smooth_samples(score.heading, 0.14 * score.rate_hz);
+}
+
+}  // namespace
+
+Script write_script(const SimOptions& options, const Building& building, const Wearer& wearer, Random& random) {
+  Script script = Tour(options, building, wearer, random).run();
+  smooth_way(script.score);
+  return script;
+}
+
+}  // namespace kinemap::sim

@@ -32,6 +32,8 @@ class Writer {
   void choice(const char* key, const std::string& value, std::initializer_list<const char*>) { json_[key] = value; }
   void address(const char* key, const std::string& value) { json_[key] = value; }
 
+  void at_most(const char*, double, const char*, double) {}
+
   Json json_ = Json::object();
 };
 
@@ -58,6 +60,7 @@ class Lister {
   void address(const char* key, const std::string& value) {
     keys_.push_back({prefix_ + key, "", Json(value).dump(), kAddressAllowed});
   }
+  void at_most(const char*, double, const char*, double) {}
 
  private:
   std::vector<ConfigKey>& keys_;

@@ -11,7 +11,7 @@
 /// it counts the members).
 ///
 /// A visitor `v` offers: section(key, struct) · number(key, ref, Range) · flag(key, ref) · choice(key, ref, {…}) ·
-/// address(key, ref).
+/// address(key, ref) · at_most(key a, a, key b, b): a ≤ b.
 namespace kinemap {
 
 /// What a number may be; `unit` is for people ("m", "rad", "s", "Hz", "1" for plain numbers).
@@ -38,26 +38,182 @@ void fields(V& v, AssemblerConfig& c) {
 
 template <class V>
 void fields(V& v, TrackerConfig::KeyPoses& c) {
-  v.number("distance_m", c.distance_m, Range{"m", 0.01, 10});
-  v.number("turn_rad", c.turn_rad, Range{"rad", 0.01, 3.15});
-  v.number("tracing_s", c.tracing_s, Range{"s", 0.05, 60});
-  v.number("idle_s", c.idle_s, Range{"s", 0.05, 3600});
+  v.number("distance_m", c.distance_m, Range{"m", 0.001, 100});
+  v.number("turn_rad", c.turn_rad, Range{"rad", 0.0001, 3.1416});
+  v.number("tracing_s", c.tracing_s, Range{"s", 0.001, 3600});
+  v.number("idle_s", c.idle_s, Range{"s", 0.001, 3600});
+  v.number("path_step_m", c.path_step_m, Range{"m", 0.001, 100});
+  v.number("turn_step_rad", c.turn_step_rad, Range{"rad", 0.0001, 3.1416});
+}
+
+template <class V>
+void fields(V& v, TrackerConfig::Stance& c) {
+  v.number("rest_speed_mps", c.rest_speed_mps, Range{"m/s", 0.001, 100});
+  v.number("smoothing_s", c.smoothing_s, Range{"s", 0.001, 3600});
+  v.number("rest_s", c.rest_s, Range{"s", 0, 3600});
+  v.number("flat_rad", c.flat_rad, Range{"rad", 0, 3.1416});
+  v.number("ball_height_m", c.ball_height_m, Range{"m", 0, 100});
+  v.number("level_m", c.level_m, Range{"m", 0, 100});
+}
+
+template <class V>
+void fields(V& v, TrackerConfig::Gesture& c) {
+  v.number("elbow_on_rad", c.elbow_on_rad, Range{"rad", 0, 3.1416});
+  v.number("elbow_off_rad", c.elbow_off_rad, Range{"rad", 0, 3.1416});
+  v.number("hip_on_m", c.hip_on_m, Range{"m", 0, 100});
+  v.number("hip_off_m", c.hip_off_m, Range{"m", 0, 100});
+  v.number("crest_up_m", c.crest_up_m, Range{"m", 0, 100});
+  v.number("crest_out_m", c.crest_out_m, Range{"m", 0, 100});
+  v.number("below_hip_on_m", c.below_hip_on_m, Range{"m", 0, 100});
+  v.number("below_hip_off_m", c.below_hip_off_m, Range{"m", 0, 100});
+  v.number("outside_hip_on_m", c.outside_hip_on_m, Range{"m", 0.001, 100});
+  v.number("outside_hip_off_m", c.outside_hip_off_m, Range{"m", -0.5, 0.5});
+  v.number("rest_speed_mps", c.rest_speed_mps, Range{"m/s", 0.001, 100});
+  v.number("velocity_smoothing_s", c.velocity_smoothing_s, Range{"s", 0.001, 3600});
+  v.number("speed_smoothing_s", c.speed_smoothing_s, Range{"s", 0.001, 3600});
+  v.number("palm_m", c.palm_m, Range{"m", 0, 100});
+  v.number("finger_m", c.finger_m, Range{"m", 0, 100});
+  v.at_most("elbow_on_rad", c.elbow_on_rad, "elbow_off_rad", c.elbow_off_rad);
+  v.at_most("hip_on_m", c.hip_on_m, "hip_off_m", c.hip_off_m);
+  v.at_most("below_hip_on_m", c.below_hip_on_m, "below_hip_off_m", c.below_hip_off_m);
+  v.at_most("outside_hip_off_m", c.outside_hip_off_m, "outside_hip_on_m", c.outside_hip_on_m);
+}
+
+template <class V>
+void fields(V& v, TrackerConfig::Traces& c) {
+  v.number("min_duration_s", c.min_duration_s, Range{"s", 0, 3600});
+  v.number("min_extent_m", c.min_extent_m, Range{"m", 0, 100});
+  v.number("dropout_s", c.dropout_s, Range{"s", 0, 3600});
+  v.number("gap_s", c.gap_s, Range{"s", 0.001, 3600});
+  v.number("spacing_m", c.spacing_m, Range{"m", 0.001, 100});
+  v.number("spacing_s", c.spacing_s, Range{"s", 0.001, 3600});
+  v.number("hand_point_m", c.hand_point_m, Range{"m", 0, 100});
+  v.number("max_contacts", c.max_contacts, Range{"1", 100, 1000000});
+}
+
+template <class V>
+void fields(V& v, TrackerConfig::Sitting& c) {
+  v.number("thigh_on", c.thigh_on, Range{"1", 0, 1});
+  v.number("thigh_low_on", c.thigh_low_on, Range{"1", 0, 1});
+  v.number("thigh_off", c.thigh_off, Range{"1", 0, 1});
+  v.number("thigh_spread", c.thigh_spread, Range{"1", 0, 1});
+  v.number("low_hips_m", c.low_hips_m, Range{"m", 0, 100});
+  v.number("hips_min_share", c.hips_min_share, Range{"1", 0, 1});
+  v.number("hips_max_share", c.hips_max_share, Range{"1", 0, 1});
+  v.number("shank_min", c.shank_min, Range{"1", 0, 1});
+  v.number("trunk_min", c.trunk_min, Range{"1", -1, 1});
+  v.number("speed_on_mps", c.speed_on_mps, Range{"m/s", 0.001, 100});
+  v.number("speed_off_mps", c.speed_off_mps, Range{"m/s", 0.001, 100});
+  v.number("smoothing_s", c.smoothing_s, Range{"s", 0.001, 3600});
+  v.number("outside_on_m", c.outside_on_m, Range{"m", 0.001, 100});
+  v.number("outside_off_m", c.outside_off_m, Range{"m", 0.001, 100});
+  v.number("min_unsupported_share", c.min_unsupported_share, Range{"1", 0, 1});
+  v.number("min_unsupported_s", c.min_unsupported_s, Range{"s", 0, 3600});
+  v.number("min_still_s", c.min_still_s, Range{"s", 0, 3600});
+  v.number("dropout_s", c.dropout_s, Range{"s", 0, 3600});
+  v.number("gap_s", c.gap_s, Range{"s", 0.001, 3600});
+  v.number("moved_m", c.moved_m, Range{"m", 0, 100});
+  v.number("hip_to_seat_m", c.hip_to_seat_m, Range{"m", 0, 100});
+  v.number("seat_behind_hip_m", c.seat_behind_hip_m, Range{"m", 0, 100});
+  v.number("sample_s", c.sample_s, Range{"s", 0.001, 3600});
+  v.number("max_samples", c.max_samples, Range{"1", 10, 1000000});
+  v.at_most("thigh_on", c.thigh_on, "thigh_off", c.thigh_off);
+  v.at_most("hips_min_share", c.hips_min_share, "hips_max_share", c.hips_max_share);
+  v.at_most("speed_on_mps", c.speed_on_mps, "speed_off_mps", c.speed_off_mps);
+  v.at_most("outside_off_m", c.outside_off_m, "outside_on_m", c.outside_on_m);
 }
 
 template <class V>
 void fields(V& v, TrackerConfig& c) {
   v.section("key_poses", c.key_poses);
+  v.section("stance", c.stance);
+  v.section("gesture", c.gesture);
+  v.section("traces", c.traces);
+  v.section("sitting", c.sitting);
 }
 
 template <class V>
 void fields(V& v, MapperConfig::Odometry& c) {
-  v.number("translation_m_per_sqrt_m", c.translation_m_per_sqrt_m, Range{"m/√m", 1e-4, 1});
-  v.number("heading_rad_per_sqrt_s", c.heading_rad_per_sqrt_s, Range{"rad/√s", 1e-5, 1});
+  v.number("translation_m_per_sqrt_m", c.translation_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
+  v.number("translation_m_per_sqrt_s", c.translation_m_per_sqrt_s, Range{"m/√s", 1e-05, 1});
+  v.number("vertical_m_per_sqrt_m", c.vertical_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
+  v.number("heading_rad_per_sqrt_s", c.heading_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
+  v.number("heading_rad_per_rad", c.heading_rad_per_rad, Range{"rad/rad", 0, 1});
+  v.number("tilt_rad", c.tilt_rad, Range{"rad", 0.0001, 3.1416});
+  v.number("floor_m", c.floor_m, Range{"m", 0.0001, 10});
+}
+
+template <class V>
+void fields(V& v, MapperConfig::Hand& c) {
+  v.number("tip_m", c.tip_m, Range{"m", 0, 100});
+  v.number("tip_per_stature", c.tip_per_stature, Range{"1", 0, 0.3});
+  v.number("contact_sigma_m", c.contact_sigma_m, Range{"m", 0.0001, 10});
+  v.number("contact_correlation_s", c.contact_correlation_s, Range{"s", 0.001, 3600});
+  v.number("contact_spacing_m", c.contact_spacing_m, Range{"m", 0.001, 100});
+  v.number("corner_sigma_m", c.corner_sigma_m, Range{"m", 0.0001, 10});
+  v.number("loss_scale", c.loss_scale, Range{"1", 0.01, 1000});
+}
+
+template <class V>
+void fields(V& v, MapperConfig::Seats& c) {
+  v.number("level_sigma_m", c.level_sigma_m, Range{"m", 0.0001, 10});
+  v.number("height_sigma_m", c.height_sigma_m, Range{"m", 0.0001, 10});
+  v.number("heading_sigma_rad", c.heading_sigma_rad, Range{"rad", 0.0001, 3.1416});
+  v.number("loss_scale", c.loss_scale, Range{"1", 0.01, 1000});
+}
+
+template <class V>
+void fields(V& v, MapperConfig::Walls& c) {
+  v.number("height_m", c.height_m, Range{"m", 0, 100});
+  v.number("right_angle_sigma_rad", c.right_angle_sigma_rad, Range{"rad", 0, 1});
+  v.number("right_angle_max_rad", c.right_angle_max_rad, Range{"rad", 0, 3.1416});
+  v.number("join_max_m", c.join_max_m, Range{"m", 0, 100});
+}
+
+template <class V>
+void fields(V& v, MapperConfig::Association& c) {
+  v.number("gate_sigma", c.gate_sigma, Range{"1", 0.1, 100});
+  v.number("position_sigma_m", c.position_sigma_m, Range{"m", 0.0001, 10});
+  v.number("heading_sigma_rad", c.heading_sigma_rad, Range{"rad", 0.0001, 3.1416});
+  v.number("size_sigma_m", c.size_sigma_m, Range{"m", 0.0001, 10});
+  v.number("size_sigma_per_m", c.size_sigma_per_m, Range{"m/m", 0, 10});
+  v.number("max_cost_increase", c.max_cost_increase, Range{"1", 0, 1000000});
+  v.number("ambiguity", c.ambiguity, Range{"1", 0, 1000000});
+}
+
+template <class V>
+void fields(V& v, MapperConfig::Solver& c) {
+  v.number("closure_iterations", c.closure_iterations, Range{"1", 1, 1000});
+  v.number("final_iterations", c.final_iterations, Range{"1", 1, 1000});
+}
+
+template <class V>
+void fields(V& v, LandmarkConfig& c) {
+  v.number("plane_tolerance_m", c.plane_tolerance_m, Range{"m", 0, 100});
+  v.number("plane_tolerance_per_m", c.plane_tolerance_per_m, Range{"m/m", 0, 10});
+  v.number("reach_speed_m_per_s", c.reach_speed_m_per_s, Range{"m/s", 0.001, 100});
+  v.number("reach_max_s", c.reach_max_s, Range{"s", 0, 3600});
+  v.number("wall_min_extent_m", c.wall_min_extent_m, Range{"m", 0, 100});
+  v.number("rectangle_min_side_m", c.rectangle_min_side_m, Range{"m", 0.001, 100});
+  v.number("rectangle_max_side_m", c.rectangle_max_side_m, Range{"m", 0.001, 100});
+  v.number("corner_window_m", c.corner_window_m, Range{"m", 0.001, 100});
+  v.number("corner_angle_rad", c.corner_angle_rad, Range{"rad", 0, 3.1416});
+  v.number("table_min_height_m", c.table_min_height_m, Range{"m", 0, 100});
+  v.number("table_max_height_m", c.table_max_height_m, Range{"m", 0, 100});
+  v.number("max_slant_rad", c.max_slant_rad, Range{"rad", 0, 3.1416});
+  v.at_most("rectangle_min_side_m", c.rectangle_min_side_m, "rectangle_max_side_m", c.rectangle_max_side_m);
+  v.at_most("table_min_height_m", c.table_min_height_m, "table_max_height_m", c.table_max_height_m);
 }
 
 template <class V>
 void fields(V& v, MapperConfig& c) {
   v.section("odometry", c.odometry);
+  v.section("hand", c.hand);
+  v.section("seats", c.seats);
+  v.section("walls", c.walls);
+  v.section("association", c.association);
+  v.section("solver", c.solver);
+  v.section("landmarks", c.landmarks);
 }
 
 template <class V>

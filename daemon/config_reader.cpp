@@ -56,6 +56,12 @@ void ConfigReader::address(const char* key, std::string& target) {
   target = text;
 }
 
+void ConfigReader::at_most(const char* key, double value, const char* bound_key, double bound) {
+  if (value <= bound) return;
+  fail(path_of(key),
+       Json(value).dump() + " is more than " + bound_key + " (" + Json(bound).dump() + "), which it may not be");
+}
+
 std::string ConfigReader::shown(const Json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "a list";

@@ -62,6 +62,7 @@ class ConfigReader {
   void flag(const char* key, bool& target);
   void choice(const char* key, std::string& target, std::initializer_list<const char*> allowed);
   void address(const char* key, std::string& target);
+  void at_most(const char* key, double value, const char* bound_key, double bound);
 
   [[nodiscard]] const std::optional<std::string>& error() const { return error_; }
 

@@ -40,7 +40,13 @@ Pipeline::~Pipeline() {
   solver_.request_stop();
 }
 
-bool Pipeline::offer(const SuitFrame& frame) { return frames_.push({frame, nullptr}); }
+bool Pipeline::offer(const SuitFrame& frame) {
+  SuitMessage message{frame, nullptr};
+  message.frame.discontinuity |= discontinuity_lost_;
+  const bool taken = frames_.push(message);
+  discontinuity_lost_ = !taken && message.frame.discontinuity;
+  return taken;
+}
 bool Pipeline::offer(const WearerInfo& wearer) {
   return frames_.push({{}, std::make_shared<const WearerInfo>(wearer)});
 }

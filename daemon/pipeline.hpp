@@ -101,7 +101,8 @@ class Pipeline {
   void take_message(const MapperMessage& message);
   void notify(const Event& event);
 
-  Ring<SuitMessage> frames_;  // network → detection
+  bool discontinuity_lost_ = false;  // network thread only: a refused frame said so, the next one must
+  Ring<SuitMessage> frames_;         // network → detection
   Ring<std::shared_ptr<const MapperMessage>>
       events_;                       // detection → solver; by pointer: a trace is not copied on the fast thread
   Ring<Notice> notices_;             // solver → the one listener

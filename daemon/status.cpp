@@ -23,21 +23,28 @@ bool receiving(const ReceiverState& suit) {
 Json stream_json(const AssemblerStats& s) {
   Json faults = Json::object();
   for (std::size_t i = 0; i < s.faults.size(); ++i) faults[mxtp::to_string(static_cast<mxtp::Fault>(i))] = s.faults[i];
+  // Up to refused_bones each datagram is in exactly one counter; the rest counts samples and events.
   return {{"datagrams", s.datagrams},
           {"bytes", s.bytes},
-          {"frames", s.frames},
           {"faults", std::move(faults)},
+          {"used", s.used},
+          {"waiting", s.waiting},
           {"skipped_types", s.skipped_types},
           {"meta", s.meta},
           {"duplicates", s.duplicates},
           {"late", s.late},
-          {"incomplete", s.incomplete},
-          {"lost_samples", s.lost_samples},
+          {"incomplete_datagrams", s.incomplete_datagrams},
+          {"malformed", s.malformed},
           {"other_character", s.other_character},
           {"other_sender", s.other_sender},
           {"not_a_person", s.not_a_person},
           {"refused_pinned", s.refused_pinned},
+          {"refused_bones", s.refused_bones},
+          {"frames", s.frames},
+          {"incomplete", s.incomplete},
+          {"lost_samples", s.lost_samples},
           {"restarts", s.restarts},
+          {"clock_jumps", s.clock_jumps},
           {"odd_bones", s.odd_bones}};
 }
 

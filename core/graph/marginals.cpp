@@ -53,7 +53,8 @@ class Marginals::Impl {
         Y.row(row_of[static_cast<std::size_t>(it.row())]) -= it.value() * Y.row(static_cast<Eigen::Index>(r));
       }
     }
-    return Y.transpose() * Y;
+    const Eigen::MatrixXd covariance = Y.transpose() * Y;
+    return covariance.selfadjointView<Eigen::Lower>();  // symmetric to the bit
   }
 
  private:

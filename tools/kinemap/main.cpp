@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       "\n'kinemap COMMAND --help' explains each command. Exit codes: 0 done, 1 bad input or failure, 2 wrong usage or "
       "configuration.");
   Run run;
-  for (const auto add : {add_replay, add_build, add_map, add_status, add_watch, add_optimize, add_eval}) add(app, run);
+  for (const auto add : {add_sim, add_replay, add_build, add_map, add_status, add_watch, add_optimize, add_eval}) add(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,7 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/kinemap/truth.hpp"
 
+#include "protocol/json_cursor.hpp"
+
 namespace kinemap::eval {
+namespace {
+
+TruthObject read_object(const JsonCursor& json) {
+  TruthObject object;
+  object.id = static_cast<std::uint32_t>(json.at("id").count(UINT32_MAX));
+  const std::string name = json.at("type").string();
+  const auto type = object_type_from(name);
+  if (!type) json.at("type").fail("unknown object type \"" + name + "\"");
+  object.type = type.value_or(ObjectType::Wall);
+  const Eigen::Vector4d q = json.at("pose").at("orientation").vector<4>();
+  object.pose = {json.at("pose").at("position").vector<3>(), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+  if (object.type != ObjectType::Chair) {
+    const Eigen::Vector2d size = json.at("size").vector<2>();
+    if (json.has("size") && size.minCoeff() <= 0.0) json.at("size").fail("expected two lengths > 0");
+    object.size = {size[0], size[1]};
+  }
+  object.klass = class_of(object.type, object.size[0]);
+  if (json.has("class")) {
+    const std::string klass = json.at("class").string();
+    if (klass != "big" && klass != "small") json.at("class").fail("expected \"big\" or \"small\"");
+    object.klass = klass == "big" ? Class::BigScreen : Class::SmallScreen;
+  }
+  return object;
+}
+
+/// A row is [t, x, y, z, qw, qx, qy, qz].
+std::vector<TimedPose> read_trajectory(const JsonCursor& json) {
+  std::vector<TimedPose> trajectory;
+  for (const JsonCursor& row : json.items()) {
+    const auto v = row.vector<8>();
+    if (!trajectory.empty() && v[0] <= trajectory.back().time_s) row.fail("expected ascending times");
+    trajectory.push_back({v[0], {{v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]}}});
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+Result<Truth> truth_from_text(const std::string& text) {
+  const auto json = parse_json(text);
+  if (!json) return Error{json.error()};
+  std::optional<Error> error;
+  const JsonCursor root(*json, error);
+  if (root.at("format").string() != "kinemap/truth") root.at("format").fail("expected \"kinemap/truth\"");
+  if (root.at("version").count() != 1) root.at("version").fail("this program reads version 1");
+  Truth truth;
+  for (const JsonCursor& object : root.at("objects").items()) truth.objects.push_back(read_object(object));
+  truth.untouched = root.at("unvisited").items().size();
+  truth.trajectory = read_trajectory(root.at("trajectory"));
+  if (error) return *error;
+  return truth;
+}
 
 const char* to_string(Class c) {
   constexpr const char* kNames[] = {"table", "big screen", "small screen", "wall", "chair"};

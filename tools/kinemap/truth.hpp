@@ -21,7 +21,7 @@ const char* to_string(Class c);  ///< "table", "big screen", …
 inline constexpr double kBigScreenM = 1.0;
 Class class_of(ObjectType type, double long_side_m);
 
-/// One real object, in the building's frame (z up, m).
+/// One real object, in the frame of the true trajectory (z up, m).
 struct TruthObject {
   std::uint32_t id = 0;
   ObjectType type = ObjectType::Wall;

@@ -11,42 +11,44 @@ namespace kinemap {
 /// stature.
 struct TrackerConfig {
   struct KeyPoses {
-    double distance_m = 0.2;   ///< level distance since the last key pose (paper, section V)
-    double turn_rad = 0.1745;  ///< heading change since the last key pose
-    double tracing_s = 1.0;    ///< time since the last key pose while tracing or sitting
-    double idle_s = 10.0;      ///< time since the last key pose otherwise
-    double path_step_m =
-        0.02;  ///< the path is summed in steps of this length, so that neither noise nor frame rate lengthens it
+    double distance_m = 0.2;    ///< level distance since the last key pose (paper, section V)
+    double turn_rad = 0.1745;   ///< heading change since the last key pose
+    double tracing_s = 1.0;     ///< time since the last key pose while tracing or sitting
+    double idle_s = 10.0;       ///< time since the last key pose otherwise
+    double path_step_m = 0.02;  ///< the path is summed in such steps, so that neither noise nor frame rate lengthens it
     double turn_step_rad = 0.0175;  ///< the same for the sum of heading changes
   } key_poses;
 
   /// Which foot carries the weight, and how far the floor is under it.
   struct Stance {
-    double rest_speed_mps = 0.4;  ///< an ankle slower than this rests
-    double smoothing_s = 0.05;    ///< time constant of the ankle's speed
+    double rest_speed_mps = 0.35;  ///< an ankle slower than this rests
+    double smoothing_s = 0.03;     ///< time constant of the ankle's speed
+    double rest_s = 0.06;          ///< it must have rested for so long; a jump's apex is shorter
     double flat_rad = 0.35;       ///< a foot pitched or rolled more than this is rolling off, its sole is not the floor
     double ball_height_m = 0.02;  ///< the ball of the foot (origin of the toe segment) over the sole
-    double above_lower_m = 0.04;  ///< a sole so far above the other one does not carry the weight
+    double level_m = 0.015;       ///< soles closer in height are equal: the foot that carried the weight still does
   } stance;
 
   /// Left hand on the hip: the wearer's word that the right hand shows something.
   struct Gesture {
     double elbow_on_rad = 2.09;  ///< inner angle between upper arm and forearm
     double elbow_off_rad = 2.36;
-    double hip_on_m = 0.19;  ///< wrist, palm or finger to the iliac crest
-    double hip_off_m = 0.25;
-    double crest_up_m = 0.10;     ///< iliac crest over the hip joint, in the pelvis frame
-    double crest_out_m = 0.06;    ///< iliac crest outside the hip joint, in the pelvis frame
-    double below_hip_on_m = 0.0;  ///< the palm may be so far below the hip joint; lower is a pocket or a hanging arm
-    double below_hip_off_m = 0.04;
-    double inside_hip_on_m =
-        0.0;  ///< wrist and palm may both be so far inside of the hip joint; more is the belly or the lap
-    double inside_hip_off_m = 0.03;
-    double speed_on_mps = 0.35;  ///< hand against pelvis; a hand that swings past the hip does not lie on it
-    double speed_off_mps = 0.8;
-    double smoothing_s = 0.15;  ///< time constant of that speed
-    double palm_m = 0.09;       ///< middle of the palm, along the hand from the wrist
-    double finger_m = 0.18;     ///< finger tips, along the hand from the wrist
+    double hip_on_m = 0.16;  ///< wrist, palm or finger to the iliac crest
+    double hip_off_m = 0.22;
+    double crest_up_m = 0.10;   ///< iliac crest over the hip joint, in the pelvis frame
+    double crest_out_m = 0.06;  ///< iliac crest outside the hip joint, in the pelvis frame
+    // The finger tips may be so far below the hip joint; lower is a pocket or a hanging arm.
+    double below_hip_on_m = 0.10;
+    double below_hip_off_m = 0.14;
+    // Wrist or palm must be so far outside of the hip joint; less is the belly or the lap.
+    double outside_hip_on_m = 0.01;
+    double outside_hip_off_m = -0.02;
+    double rest_speed_mps = 0.18;  ///< of the wrist against the pelvis, to begin; swinging and scratching are faster
+    double hold_s = 0.3;           ///< the hand must rest for so long; a trace still begins when it came near
+    double velocity_smoothing_s = 0.15;  ///< time constant of that velocity, against the jitter of the hand
+    double speed_smoothing_s = 0.3;      ///< time constant of its magnitude
+    double palm_m = 0.09;                ///< middle of the palm, along the hand from the wrist
+    double finger_m = 0.18;              ///< finger tips, along the hand from the wrist
   } gesture;
 
   struct Traces {

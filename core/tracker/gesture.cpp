@@ -26,21 +26,24 @@ double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vecto
 }  // namespace
 
 HandOnHip::HandOnHip(Side side, const TrackerConfig::Gesture& config)
-    : side_(side), config_(config), velocity_(config.smoothing_s) {}
+    : side_(side), config_(config), speed_(config.velocity_smoothing_s, config.speed_smoothing_s) {}
 
-bool HandOnHip::step(const SuitFrame& frame) {
+HipState HandOnHip::step(const SuitFrame& frame) {
   const Segment hand = (side_ == Side::Left ? kLeft : kRight).hand;
-  const double speed = velocity_.step(frame.time_s, frame[Segment::Pelvis].inverse() * frame[hand].p).norm();
-  on_ = lies_on_hip(frame, speed);
-  return on_;
+  const double speed = speed_.step(frame.time_s, frame[Segment::Pelvis].inverse() * frame[hand].p);
+  state_.near = is_near(frame);
+  if (!state_.near || speed > config_.rest_speed_mps) moved_s_ = frame.time_s;
+  // Once held, the hand may fidget as long as it stays near.
+  state_.held = state_.near && (state_.held || frame.time_s - moved_s_ >= config_.hold_s);
+  return state_;
 }
 
 void HandOnHip::reset() {
-  velocity_.reset();
-  on_ = false;
+  speed_.reset();
+  state_ = {};
 }
 
-bool HandOnHip::lies_on_hip(const SuitFrame& frame, double speed_mps) const {
+bool HandOnHip::is_near(const SuitFrame& frame) const {
   const Arm& arm = side_ == Side::Left ? kLeft : kRight;
   const Vector3d& elbow = frame[arm.forearm].p;
   const double elbow_rad = angle_between(frame[arm.upper_arm].p - elbow, frame[arm.hand].p - elbow);
@@ -53,19 +56,19 @@ bool HandOnHip::lies_on_hip(const SuitFrame& frame, double speed_mps) const {
   const Vector3d hip = T_pelvis_odom * frame[arm.upper_leg].p;
   const Vector3d crest = hip + Vector3d(0, arm.outward * config_.crest_out_m, config_.crest_up_m);
 
-  const double below_hip = hip.z() - palm.z();
+  const double below_hip = hip.z() - finger.z();
   const double inside_hip = arm.outward * hip.y() - std::max(arm.outward * wrist.y(), arm.outward * palm.y());
-  return below_with_hysteresis(on_, elbow_rad, config_.elbow_on_rad, config_.elbow_off_rad) &&
-         below_with_hysteresis(on_, distance_to_segment(crest, wrist, finger), config_.hip_on_m, config_.hip_off_m) &&
-         below_with_hysteresis(on_, below_hip, config_.below_hip_on_m, config_.below_hip_off_m) &&
-         below_with_hysteresis(on_, inside_hip, config_.inside_hip_on_m, config_.inside_hip_off_m) &&
-         below_with_hysteresis(on_, speed_mps, config_.speed_on_mps, config_.speed_off_mps);
+  return below_with_hysteresis(state_.near, elbow_rad, config_.elbow_on_rad, config_.elbow_off_rad) &&
+         below_with_hysteresis(state_.near, distance_to_segment(crest, wrist, finger), config_.hip_on_m,
+                               config_.hip_off_m) &&
+         below_with_hysteresis(state_.near, below_hip, config_.below_hip_on_m, config_.below_hip_off_m) &&
+         below_with_hysteresis(state_.near, inside_hip, -config_.outside_hip_on_m, -config_.outside_hip_off_m);
 }
 
-bool GestureFold::step(const SuitFrame& frame) {
-  const bool left = left_.step(frame);
-  const bool right = right_.step(frame);
-  return left && !right;
+HipState GestureFold::step(const SuitFrame& frame) {
+  const HipState left = left_.step(frame);
+  const HipState right = right_.step(frame);
+  return {left.near && !right.held, left.held && !right.held};
 }
 
 void GestureFold::reset() {

@@ -32,6 +32,34 @@ class SmoothedVelocity {
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
 };
 
+/// Low-passed magnitude of a low-passed velocity, m/s: to and fro does not cancel, as it does in the velocity itself.
+class SmoothedSpeed {
+ public:
+  SmoothedSpeed(double velocity_s, double speed_s) : velocity_(velocity_s), time_constant_s_(speed_s) {}
+
+  void reset() {
+    velocity_.reset();
+    speed_ = 0.0;
+    started_ = false;
+  }
+
+  double step(double time_s, const Eigen::Vector3d& point) {
+    const double speed = velocity_.step(time_s, point).norm();
+    if (started_ && time_s > time_s_)
+      speed_ += (1.0 - std::exp(-(time_s - time_s_) / time_constant_s_)) * (speed - speed_);
+    started_ = true;
+    time_s_ = time_s;
+    return speed_;
+  }
+
+ private:
+  SmoothedVelocity velocity_;
+  double time_constant_s_;
+  bool started_ = false;
+  double time_s_ = 0.0;
+  double speed_ = 0.0;
+};
+
 /// The state after this sample: `value` keeps an active state alive up to `off` and starts one only below `on` (on ≤
 /// off).
 inline bool below_with_hysteresis(bool active, double value, double on, double off) {

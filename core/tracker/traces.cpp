@@ -6,15 +6,17 @@
 
 namespace kinemap {
 
-std::optional<Trace> TraceFold::step(double time_s, bool gesture) {
+std::optional<Trace> TraceFold::step(double time_s, HipState gesture) {
   std::optional<Trace> ended;
   const double unseen_s = time_s - seen_s_;
-  if (open_ && unseen_s > (gesture ? config_.gap_s : config_.dropout_s)) ended = close();
-  if (!gesture) return ended;
+  if (open_ && unseen_s > (gesture.near ? config_.gap_s : config_.dropout_s)) ended = close();
+  if (!gesture.near) return ended;
   if (!open_) {
     open_ = true;
+    held_ = false;
     trace_.begin_s = time_s;
   }
+  held_ = held_ || gesture.held;
   seen_s_ = time_s;
   return ended;
 }
@@ -44,6 +46,7 @@ std::optional<Trace> TraceFold::close() {
   open_ = false;
   Trace trace = std::exchange(trace_, {});
   const double extent_m = std::exchange(extent_m_, 0.0);
+  if (!held_) return std::nullopt;
   trace.end_s = seen_s_;
   // What the hand did after the gesture was last seen is not part of it.
   while (!trace.contacts.empty() && trace.contacts.back().time_s > seen_s_) trace.contacts.pop_back();

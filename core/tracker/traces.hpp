@@ -7,6 +7,7 @@
 #include "core/body.hpp"
 #include "core/events.hpp"
 #include "core/tracker/config.hpp"
+#include "core/tracker/gesture.hpp"
 
 namespace kinemap {
 
@@ -16,8 +17,10 @@ class TraceFold {
  public:
   explicit TraceFold(const TrackerConfig::Traces& config) : config_(config) {}
 
-  /// Opens, keeps or ends the trace; returns one that has just ended and is long enough in time and space.
-  std::optional<Trace> step(double time_s, bool gesture);
+  /// Opens, keeps or ends the trace; returns one that has just ended and is long enough in time and space. It opens
+  /// when the left hand comes near the hip, so that nothing of the right hand is missed, and is forgotten when the left
+  /// hand does not stay.
+  std::optional<Trace> step(double time_s, HipState gesture);
   /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
   /// frame.
   void record(const SuitFrame& frame, const KeyPose& latest);
@@ -33,6 +36,7 @@ class TraceFold {
  private:
   TrackerConfig::Traces config_;
   bool open_ = false;
+  bool held_ = false;  ///< the gesture has been held during this trace
   Trace trace_;
   double seen_s_ = 0.0;    ///< last frame with the gesture
   double extent_m_ = 0.0;  ///< farthest distance of the wrist from the first contact while the gesture was seen

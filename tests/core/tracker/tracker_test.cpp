@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/tracker/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/tracker/support.hpp"
+
+namespace kinemap::test {
+namespace {
+
+using Eigen::Vector3d;
+
+// Walks, draws, sits, draws while walking slowly. The odd speed keeps steps from ending on a frame to the last bit.
+std::vector<SuitFrame> session(const Puppet& puppet, const Sampling& sampling = {}) {
+  const auto draw = [](Figure f, double t) {
+    f.arm[0] = on_hip();
+    f.arm[1] = drawing(t);
+    return f;
+  };
+  const auto at = [](Figure f, double x) {
+    f.hips.x() += x;
+    return f;
+  };
+  return perform(puppet,
+                 {{5.0, [=](double t) { return walking(t, 1.037); }},
+                  {9.0, [=](double t) { return at(draw(standing(), t), 5.185); }},
+                  {3.0, [=](double) { return at(standing(), 5.185); }},
+                  {10.0, [=, &puppet](double) { return at(sitting(puppet, 0.45), 5.185); }},
+                  {3.0, [=](double) { return at(standing(), 5.185); }},
+                  {10.0,
+                   [=](double t) {
+                     return draw(walking(t, 0.311, {5.185, 0.0}), t);
+                   }},
+                  {4.0,
+                   [=](double t) {
+                     return walking(t, 1.037, {8.295, 0.0});
+                   }}},
+                 sampling);
+}
+
+void expect_well_ordered(const Outcome& outcome) {
+  KeyPoseId emitted = 0;
+  for (const Event& event : outcome.events) {
+    if (const auto* key = std::get_if<KeyPose>(&event)) {
+      EXPECT_EQ(key->id, emitted);
+      ++emitted;
+    } else if (const auto* trace = std::get_if<Trace>(&event)) {
+      for (const HandContact& contact : trace->contacts) EXPECT_LT(contact.key_pose, emitted);
+    } else {
+      EXPECT_LT(std::get<Sitting>(event).key_pose, emitted);
+    }
+  }
+}
+
+TEST(Tracker, EventsOnlyReferToKeyPosesBefore) {
+  for (const Case& c : cases()) {
+    const Puppet puppet(c.stature_m, c.errors);
+    const Outcome outcome = track(session(puppet, c.sampling));
+    EXPECT_EQ(outcome.traces.size(), 2u) << describe(c);
+    EXPECT_EQ(outcome.sittings.size(), 1u) << describe(c);
+    EXPECT_EQ(outcome.stats.traces, outcome.traces.size());
+    EXPECT_EQ(outcome.stats.sittings, outcome.sittings.size());
+    EXPECT_EQ(outcome.stats.key_poses, outcome.key_poses.size());
+    expect_well_ordered(outcome);
+  }
+}
+
+TEST(Tracker, SameFramesSameEvents) {
+  const Puppet puppet;
+  const auto frames = session(puppet);
+  const Outcome a = track(frames);
+  const Outcome b = track(frames);
+  ASSERT_EQ(a.key_poses.size(), b.key_poses.size());
+  for (std::size_t i = 0; i < a.key_poses.size(); ++i) {
+    EXPECT_EQ(a.key_poses[i].T_odom_pelvis.p, b.key_poses[i].T_odom_pelvis.p);
+    EXPECT_EQ(a.key_poses[i].path_m, b.key_poses[i].path_m);
+  }
+}
+
+// Nothing depends on where the suit's world begins or where it faces.
+TEST(Tracker, MovesWithTheWorld) {
+  const Puppet puppet(1.75, {0.02, 0.02, 0.05, 9});
+  auto frames = session(puppet);
+  const Outcome here = track(frames);
+  const Pose T_there_here = level_pose({120.0, -45.0, 7.5}, 2.2);
+  for (SuitFrame& frame : frames) {
+    for (Pose& segment : frame.segments) segment = T_there_here * segment;
+  }
+  const Outcome there = track(frames);
+
+  ASSERT_EQ(here.events.size(), there.events.size());
+  for (std::size_t i = 0; i < here.key_poses.size(); ++i) {
+    const Pose moved = T_there_here * here.key_poses[i].T_odom_pelvis;
+    EXPECT_EQ(here.key_poses[i].time_s, there.key_poses[i].time_s);
+    EXPECT_NEAR((moved.p - there.key_poses[i].T_odom_pelvis.p).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(here.key_poses[i].path_m, there.key_poses[i].path_m, 1e-9);
+    EXPECT_NEAR(here.key_poses[i].turn_rad, there.key_poses[i].turn_rad, 1e-9);
+    ASSERT_EQ(here.key_poses[i].p_pelvis_stance.has_value(), there.key_poses[i].p_pelvis_stance.has_value());
+  }
+  for (std::size_t i = 0; i < here.traces.size(); ++i) {
+    ASSERT_EQ(here.traces[i].contacts.size(), there.traces[i].contacts.size());
+    for (std::size_t k = 0; k < here.traces[i].contacts.size(); ++k) {
+      EXPECT_NEAR((here.traces[i].contacts[k].T_key_hand.p - there.traces[i].contacts[k].T_key_hand.p).norm(), 0, 1e-9);
+    }
+  }
+  for (std::size_t i = 0; i < here.sittings.size(); ++i) {
+    EXPECT_EQ(here.sittings[i].key_pose, there.sittings[i].key_pose);
+    EXPECT_NEAR((here.sittings[i].T_key_seat.p - there.sittings[i].T_key_seat.p).norm(), 0, 1e-9);
+    EXPECT_NEAR(here.sittings[i].height_m, there.sittings[i].height_m, 1e-9);
+  }
+}
+
+TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
+  const Puppet puppet;
+  const auto acts = between_standing(16.0, [&](double t) {
+    Figure f = t < 8 ? sitting(puppet, 0.45) : standing();
+    if (t >= 8) f.arm = {on_hip(), drawing(t)};
+    return f;
+  });
+  auto frames = perform(puppet, acts);
+  for (const double at : {7.0, 14.0}) {
+    for (SuitFrame& frame : frames) {
+      if (frame.time_s >= at) {
+        frame.discontinuity = true;
+        break;
+      }
+    }
+  }
+  const Outcome outcome = track(frames);
+  ASSERT_EQ(outcome.sittings.size(), 2u);
+  EXPECT_LE(outcome.sittings[0].end_s, 7.0);
+  EXPECT_GE(outcome.sittings[1].begin_s, 7.0);
+  ASSERT_EQ(outcome.traces.size(), 2u);
+  EXPECT_LE(outcome.traces[0].end_s, 14.0);
+  EXPECT_GE(outcome.traces[1].begin_s, 14.0);
+  for (const Trace& trace : outcome.traces) {
+    bool after_break = false;
+    for (const HandContact& contact : trace.contacts) {
+      after_break = after_break || outcome.key_poses[contact.key_pose].time_s >= 14.0;
+    }
+    EXPECT_EQ(after_break, trace.begin_s >= 14.0) << "no contact refers across the break";
+  }
+  expect_well_ordered(outcome);
+}
+
+// Hours of sitting with the hand on the hip hold a bounded state: nothing can be seen of it but that the events stay
+// small.
+TEST(Tracker, ALongBoutStaysBounded) {
+  const Puppet puppet;
+  TrackerConfig config;
+  config.sitting.max_samples = 16;
+  auto frames = perform(puppet,
+                        between_standing(120.0,
+                                         [&](double t) {
+                                           Figure f = sitting(puppet, 0.45);
+                                           f.hips.y() = 0.02 * std::sin(t);
+                                           return f;
+                                         }),
+                        {60.0});
+  const Outcome outcome = track(frames, config);
+  ASSERT_EQ(outcome.sittings.size(), 1u);
+  EXPECT_NEAR(outcome.sittings[0].height_m, 0.45, 0.01);
+  EXPECT_NEAR(outcome.key_poses[outcome.sittings[0].key_pose].time_s, 62.0, 25.0) << "samples cover the whole bout";
+}
+
+TEST(Tracker, FinishTwiceAddsNothing) {
+  const Puppet puppet;
+  std::vector<Event> events;
+  Tracker tracker{TrackerConfig{}};
+  for (const SuitFrame& frame : session(puppet)) tracker.step(frame, events);
+  tracker.finish(events);
+  const std::size_t count = events.size();
+  tracker.finish(events);
+  EXPECT_EQ(events.size(), count);
+}
+
+TEST(Tracker, NothingComesOfNothing) {
+  std::vector<Event> events;
+  Tracker tracker{TrackerConfig{}};
+  tracker.finish(events);
+  EXPECT_TRUE(events.empty());
+}
+
+}  // namespace
+}  // namespace kinemap::test

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/graph/initialize.hpp"
 #include "core/graph/optimizer.hpp"
 #include "core/graph/so3.hpp"
 
@@ -234,6 +235,21 @@ TEST_P(G2oBenchmark, ReachesTheBestKnownCost) {
   options.function_tolerance = 1e-10;
   const graph::Verdict verdict = graph::optimize(g->graph, options);
   EXPECT_TRUE(verdict.usable && verdict.converged) << verdict.message;
+  EXPECT_NEAR(g2o_cost(g->graph), b.best_cost, b.tolerance);
+}
+
+TEST_P(G2oBenchmark, ReachesItWithoutAnyStart) {
+  const Benchmark& b = GetParam();
+  const std::filesystem::path path = std::filesystem::path(KINEMAP_SHARED_DATA) / b.file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "NOT TESTED: " << path << " is not there";
+  auto g = read_g2o(path);
+  ASSERT_TRUE(g) << g.error();
+  for (Pose& T : g->graph.poses) T = Pose{};
+  ASSERT_TRUE(graph::chordal_start(g->graph));
+  graph::OptimizerOptions options;
+  options.max_iterations = 50;
+  options.function_tolerance = 1e-10;
+  EXPECT_TRUE(graph::optimize(g->graph, options).usable);
   EXPECT_NEAR(g2o_cost(g->graph), b.best_cost, b.tolerance);
 }
 

@@ -8,7 +8,7 @@
 namespace kinemap::cli {
 
 int fail(const std::string& command, const std::string& message, ExitCode code) {
-  std::fprintf(stderr, "kinemap %s: %s\n", command.c_str(), message.c_str());
+  std::fprintf(stderr, "%s %s: %s\n", program_invocation_short_name, command.c_str(), message.c_str());
   return code;
 }
 

@@ -33,7 +33,7 @@ CLI::App* add_command(CLI::App& app, Run& run, const std::string& name, const st
   return command;
 }
 
-/// Prints "kinemap NAME: MESSAGE" to stderr and returns the code.
+/// Prints "PROGRAM COMMAND: MESSAGE" to stderr and returns the code.
 int fail(const std::string& command, const std::string& message, ExitCode code = kFailed);
 
 /// Writes to stdout and notices a full disk or a closed pipe; the exit code for it.

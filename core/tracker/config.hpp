@@ -44,7 +44,7 @@ struct TrackerConfig {
     double outside_hip_on_m = 0.01;
     double outside_hip_off_m = -0.02;
     double rest_speed_mps = 0.18;  ///< of the wrist against the pelvis, to begin; swinging and scratching are faster
-    double hold_s = 0.3;           ///< the hand must rest for so long; a trace still begins when it came near
+    double hold_s = 0.5;           ///< the hand must rest for so long; a trace still begins when it came near
     double velocity_smoothing_s = 0.15;  ///< time constant of that velocity, against the jitter of the hand
     double speed_smoothing_s = 0.3;      ///< time constant of its magnitude
     double palm_m = 0.09;                ///< middle of the palm, along the hand from the wrist
@@ -53,7 +53,7 @@ struct TrackerConfig {
 
   struct Traces {
     double min_duration_s = 1.0;       ///< shorter gestures are rejected
-    double min_extent_m = 0.25;        ///< the right hand must come so far from where it began
+    double min_extent_m = 0.25;        ///< two places of the right hand must be so far apart
     double dropout_s = 0.4;            ///< the gesture may be lost for so long without splitting the trace
     double gap_s = 1.0;                ///< without a frame for so long the trace ends
     double spacing_m = 0.01;           ///< a contact is kept when the wrist or the hand's point has moved so far

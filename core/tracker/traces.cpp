@@ -26,8 +26,9 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
   const Eigen::Vector3d p_hand_point(0, -config_.hand_point_m, 0);
   if (trace_.contacts.empty()) {
     first_wrist_ = T_odom_hand.p;
+    farthest_wrist_ = T_odom_hand.p;
   } else {
-    if (frame.time_s <= seen_s_) extent_m_ = std::max(extent_m_, (T_odom_hand.p - first_wrist_).norm());
+    if (frame.time_s <= seen_s_) stretch(T_odom_hand.p);
     const double moved =
         std::max((T_odom_hand.p - kept_.p).norm(), (T_odom_hand * p_hand_point - kept_ * p_hand_point).norm());
     if (moved < config_.spacing_m && frame.time_s - kept_s_ < config_.spacing_s) return;
@@ -39,6 +40,12 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
   trace_.contacts.push_back({frame.time_s, latest.id, latest.T_odom_pelvis.inverse() * T_odom_hand});
   kept_ = T_odom_hand;
   kept_s_ = frame.time_s;
+}
+
+void TraceFold::stretch(const Eigen::Vector3d& wrist) {
+  const double from_first = (wrist - first_wrist_).norm();
+  if (from_first > (farthest_wrist_ - first_wrist_).norm()) farthest_wrist_ = wrist;
+  extent_m_ = std::max({extent_m_, from_first, (wrist - farthest_wrist_).norm()});
 }
 
 std::optional<Trace> TraceFold::close() {

@@ -34,14 +34,17 @@ class TraceFold {
   [[nodiscard]] std::uint64_t thinned_out() const { return thinned_out_; }
 
  private:
+  void stretch(const Eigen::Vector3d& wrist);
+
   TrackerConfig::Traces config_;
   bool open_ = false;
   bool held_ = false;  ///< the gesture has been held during this trace
   Trace trace_;
   double seen_s_ = 0.0;    ///< last frame with the gesture
-  double extent_m_ = 0.0;  ///< farthest distance of the wrist from the first contact while the gesture was seen
-  Eigen::Vector3d first_wrist_ = Eigen::Vector3d::Zero();  ///< odom frame
-  Pose kept_;                                              ///< T_odom_hand of the last kept contact
+  double extent_m_ = 0.0;  ///< a lower bound (≥ half) of the wrist's farthest two places while the gesture was seen
+  Eigen::Vector3d first_wrist_ = Eigen::Vector3d::Zero();     ///< odom frame
+  Eigen::Vector3d farthest_wrist_ = Eigen::Vector3d::Zero();  ///< from the first one, odom frame
+  Pose kept_;                                                 ///< T_odom_hand of the last kept contact
   double kept_s_ = 0.0;
   std::uint64_t rejected_ = 0;
   std::uint64_t thinned_out_ = 0;

@@ -15,7 +15,7 @@ namespace kinemap {
 
 namespace {
 
-constexpr std::size_t kMostCandidates = 8;
+constexpr std::size_t kMostCandidates = 64;
 constexpr std::size_t kMostCollectors = 16;
 constexpr double kTakeOverS = 30.0;  // silence after which another character or another machine may take over
 constexpr std::uint64_t kHopelessDatagrams = 120;
@@ -94,6 +94,7 @@ class Assembler::Impl {
   void count_foreign(const Key& key, bool object, std::uint64_t datagrams);
   void feed(Stream& stream, const mxtp::Header& h, std::vector<mxtp::SegmentItem> items, const SampleQueue::Emit& emit);
   Streams::iterator candidate(const Key& key);
+  Streams::iterator least_active();
   void forget(std::unique_ptr<Stream> stream);
   void consider(Streams::iterator candidate, const std::vector<Sample>& due, const FrameSink& sink);
   void select(Streams::iterator candidate, const FrameSink& sink);
@@ -101,6 +102,7 @@ class Assembler::Impl {
   double now_s_ = 0.0;
   std::unique_ptr<Stream> selected_;
   Streams candidates_;
+  std::size_t turn_ = 0;  ///< candidate that made way last
   std::vector<std::pair<Key, WearerCollector>> collectors_;
 };
 
@@ -188,14 +190,25 @@ void Assembler::Impl::feed(Stream& s, const mxtp::Header& h, std::vector<mxtp::S
 Assembler::Impl::Streams::iterator Assembler::Impl::candidate(const Key& key) {
   const auto it = std::find_if(candidates_.begin(), candidates_.end(), [&](const auto& s) { return s->key == key; });
   if (it != candidates_.end()) return it;
-  if (candidates_.size() == kMostCandidates) {
-    const auto least = std::min_element(candidates_.begin(), candidates_.end(),
-                                        [](const auto& a, const auto& b) { return a->datagrams < b->datagrams; });
-    forget(std::move(*least));
-    candidates_.erase(least);
+  auto fresh = std::make_unique<Stream>(key, config, stats);
+  if (candidates_.size() < kMostCandidates) {
+    candidates_.push_back(std::move(fresh));
+    return std::prev(candidates_.end());
   }
-  candidates_.push_back(std::make_unique<Stream>(key, config, stats));
-  return std::prev(candidates_.end());
+  const auto gone = least_active();
+  forget(std::exchange(*gone, std::move(fresh)));
+  return gone;
+}
+
+/// Of those with the fewest datagrams the next in turn: a flood of senders that come once cannot push out one that
+/// comes again.
+Assembler::Impl::Streams::iterator Assembler::Impl::least_active() {
+  const auto fewer = [](const auto& a, const auto& b) { return a->datagrams < b->datagrams; };
+  const std::uint64_t least = (*std::min_element(candidates_.begin(), candidates_.end(), fewer))->datagrams;
+  do {
+    turn_ = (turn_ + 1) % candidates_.size();
+  } while (candidates_[turn_]->datagrams != least);
+  return candidates_.begin() + static_cast<std::ptrdiff_t>(turn_);
 }
 
 void Assembler::Impl::forget(std::unique_ptr<Stream> stream) {
@@ -206,8 +219,12 @@ void Assembler::Impl::forget(std::unique_ptr<Stream> stream) {
 /// The first candidate with a whole body is the one that is mapped.
 void Assembler::Impl::consider(Streams::iterator stream, const std::vector<Sample>& due, const FrameSink& sink) {
   if (std::any_of(due.begin(), due.end(), [](const Sample& s) { return shape_of(s) == Shape::Person; })) {
+    std::vector<SampleClock> clocks;
+    for (const Sample& s : due) clocks.push_back(s.clock);
+    const auto waiting = (*stream)->queue.waiting_clocks();
+    clocks.insert(clocks.end(), waiting.begin(), waiting.end());
     select(stream, sink);
-    maker.prime(due);
+    maker.prime(clocks);
   }
   for (const Sample& s : due) maker.take(s, sink);
 }

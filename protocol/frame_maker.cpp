@@ -2,7 +2,6 @@
 #include "protocol/frame_maker.hpp"
 
 #include <utility>
-#include <vector>
 
 namespace kinemap {
 
@@ -44,15 +43,6 @@ Shape shape_of(const Sample& s) {
     if (s.items[i].id != static_cast<std::int32_t>(i + 1)) return Shape::Malformed;
   }
   return Shape::Person;
-}
-
-void FrameMaker::prime(std::span<const Sample> samples) {
-  std::vector<SampleClock> clocks;
-  for (const Sample& s : samples) {
-    if (!clocks.empty() && s.restarted) break;
-    clocks.push_back(s.clock);
-  }
-  timeline_.prime(clocks);
 }
 
 void FrameMaker::restart(bool other_wearer) {

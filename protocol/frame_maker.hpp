@@ -28,7 +28,7 @@ class FrameMaker {
   explicit FrameMaker(AssemblerStats& stats) : stats_(&stats) {}
 
   /// Learns the rate from the first samples, before they are taken.
-  void prime(std::span<const Sample> samples);
+  void prime(std::span<const SampleClock> samples) { timeline_.prime(samples); }
   void take(const Sample& sample, const Assembler::FrameSink& sink);
   /// Takes a frame that has poses, index and a time that never decreases (any origin); it came in so many datagrams.
   void take(SuitFrame frame, std::uint64_t datagrams, bool clock_jumped, const Assembler::FrameSink& sink);

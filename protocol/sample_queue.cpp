@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t kFarthestStep =
     4096;  ///< a counter further ahead than this is not believed without silence (17 s at 240 Hz)
 constexpr std::size_t kMostWaiting = 128;  ///< samples
-constexpr std::size_t kMostWaitingItems = 16384;
+constexpr std::size_t kMostWaitingItems = 8192;
 constexpr std::size_t kMostRemembered = 256;
 constexpr std::size_t kMostCenters = 64;
 constexpr double kCenterExpectedS = 0.5;  ///< type 24 is part of the stream while one came so lately
@@ -133,9 +133,9 @@ bool SampleQueue::may_start(double now_s) const {
   if (waiting_.empty()) return false;
   if (waiting_.size() > kStartSamples || waiting_items_ > kMostWaitingItems) return true;
   if (now_s - waiting_.begin()->second.since_s > kStartPatienceS) return true;
-  const auto& first = waiting_.begin()->second.header;
-  const auto& last = waiting_.rbegin()->second.header;
-  const double span_s = time_code_step_s(first.time_code_ms, last.time_code_ms);
+  const auto clocks = waiting_clocks();
+  if (clocks.empty()) return false;
+  const double span_s = time_code_step_s(clocks.front().time_code_ms, clocks.back().time_code_ms);
   return span_s >= kStartSpanS || span_s < 0.0;
 }
 
@@ -214,6 +214,14 @@ void SampleQueue::discard(const std::function<void(std::size_t, std::uint64_t)>&
   }
   waiting_.clear();
   waiting_items_ = 0;
+}
+
+std::vector<SampleClock> SampleQueue::waiting_clocks() const {
+  std::vector<SampleClock> out;
+  for (const auto& [index, p] : waiting_) {
+    if (p.whole()) out.push_back({index, p.header.time_code_ms, p.since_s});
+  }
+  return out;
 }
 
 }  // namespace kinemap

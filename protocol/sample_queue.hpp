@@ -44,6 +44,9 @@ class SampleQueue {
   /// Drops all; `count` gets each sample's items so far and its number of datagrams, which leave `waiting`.
   void discard(const std::function<void(std::size_t items, std::uint64_t datagrams)>& count);
 
+  /// Of the whole samples that wait, in order.
+  [[nodiscard]] std::vector<SampleClock> waiting_clocks() const;
+
  private:
   struct Partial {
     mxtp::Header header;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double kPixelsPerMetre = 90.0;
 constexpr double kMargin = 70.0;
-constexpr double kFooter = 50.0;
+constexpr double kFooter = 60.0;
 
 constexpr const char* kStyle = R"(<style>
   text { font-family: 'DejaVu Sans', Helvetica, Arial, sans-serif; font-size: 12px; fill: #333 }
@@ -93,11 +94,28 @@ class Drawing {
     const std::string name = plan_letter(item.type) + std::to_string(item.id);
     const Eigen::Vector2d at = pixel(item.centre);
     if (item.type == ObjectType::Chair) return text(pixel(item.centre - 0.1 * item.front), name, "halo");
+    if (item.type == ObjectType::Table && carries_screen(item))
+      return text(below(item), name + "  " + item.size, "size halo");
     if (item.type == ObjectType::Table) {
       text(at - Eigen::Vector2d(0, 7), name, "halo");
       return text(at + Eigen::Vector2d(0, 8), item.size, "size halo");
     }
     stroke_label(item, name + "  " + item.size);
+  }
+
+  /// A screen in the middle of a table leaves no room for the table's own label.
+  [[nodiscard]] bool carries_screen(const Plan::Item& table) const {
+    return std::any_of(plan_.items.begin(), plan_.items.end(), [&](const Plan::Item& other) {
+      if (other.type != ObjectType::Screen) return false;
+      return (other.centre - table.centre).norm() < 0.6 * (table.outline[0] - table.centre).norm();
+    });
+  }
+
+  /// A point on the page just below an outline.
+  [[nodiscard]] Eigen::Vector2d below(const Plan::Item& item) const {
+    double y = 0.0;
+    for (const Eigen::Vector2d& corner : item.outline) y = std::max(y, pixel(corner).y());
+    return {pixel(item.centre).x(), y + 12.0};
   }
 
   /// Along a wall on its outer side; along a screen in front of it, where the wall's own label is not.
@@ -133,7 +151,7 @@ class Drawing {
     text({x, y + 12}, "0", "size");
     text({x + kPixelsPerMetre, y + 12}, "1", "size");
     text({x + 2 * kPixelsPerMetre, y + 12}, "2 m", "size");
-    const Eigen::Vector2d origin(width_ - kMargin - 20.0, y - 6.0);
+    const Eigen::Vector2d origin(width_ - kMargin, height_ - 60.0);
     for (const auto& [name, heading] :
          {std::pair{"x", plan_.turn_rad}, std::pair{"y", plan_.turn_rad + std::numbers::pi / 2}}) {
       const Eigen::Vector2d direction(std::cos(heading), -std::sin(heading)), tip = origin + 24.0 * direction;

@@ -21,10 +21,12 @@ constexpr std::chrono::milliseconds kPause{100};  // after a failed accept (no f
 
 class Server::Impl {
  public:
-  Impl(const Config::Api& config, Sources sources, const Config::Suit& suit, std::uint16_t suit_port)
+  Impl(const Config::Api& config, Sources sources, const Config::Suit& suit, std::uint16_t suit_port,
+       const ServerLimits& limits)
       : api_(std::move(sources), suit, suit_port),
         hub_(api_, config.pose_rate_hz),
-        context_{api_, hub_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes, false} {}
+        context_{api_,         hub_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes,
+                 limits.stall, false} {}
   ~Impl() { io_.stop(); }
 
   ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
@@ -111,8 +113,8 @@ class Server::Impl {
 };
 
 Started<Server> Server::open(const Config::Api& config, Sources sources, const Config::Suit& suit,
-                             std::uint16_t suit_port) {
-  auto impl = std::make_unique<Impl>(config, std::move(sources), suit, suit_port);
+                             std::uint16_t suit_port, const ServerLimits& limits) {
+  auto impl = std::make_unique<Impl>(config, std::move(sources), suit, suit_port, limits);
   ErrorCode error;
   const auto address = net::ip::make_address(config.address, error);
   if (!error) error = impl->bind(address, config.port);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 
@@ -9,6 +10,12 @@
 #include "daemon/start.hpp"
 
 namespace kinemap {
+
+/// Times that no user needs to change.
+struct ServerLimits {
+  /// A stream's client must take each message within this time, and a second more for each 64 KiB, or is disconnected.
+  std::chrono::milliseconds stall{15000};
+};
 
 /// The HTTP and WebSocket server on its own thread. It reads snapshots only: nothing on the way from the suit to the
 /// map waits for it.

@@ -13,7 +13,7 @@ namespace websocket = beast::websocket;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestMessage = 256 * 1024;
-constexpr std::chrono::seconds kStall{15};  // one message not taken for so long: the client does not read any more
+constexpr std::size_t kSlowestBytesPerS = 64 * 1024;
 
 class StreamSession : public Subscriber, public std::enable_shared_from_this<StreamSession> {
  public:
@@ -42,7 +42,7 @@ class StreamSession : public Subscriber, public std::enable_shared_from_this<Str
 
   void offer(const News& news, Clock::time_point now) override {
     if (left_) return;
-    if (writing_ && now - write_began_ > kStall) return give_up();
+    if (writing_ && now > write_deadline_) return give_up();
     for (std::size_t i = 0; i < kTopicCount; ++i) {
       const auto& text = news.newest[i];
       if (!wants_[i] || !text || text == seen_[i]) continue;
@@ -119,7 +119,7 @@ class StreamSession : public Subscriber, public std::enable_shared_from_this<Str
     auto text = outbox_.next();
     if (!text) return;
     writing_ = true;
-    write_began_ = Clock::now();
+    write_deadline_ = Clock::now() + context_.stall + std::chrono::seconds(text->size() / kSlowestBytesPerS);
     stream_.text(true);
     stream_.async_write(net::buffer(*text), [self = shared_from_this(), text](ErrorCode error, std::size_t) {
       self->writing_ = false;
@@ -154,7 +154,7 @@ class StreamSession : public Subscriber, public std::enable_shared_from_this<Str
   std::array<SharedText, kTopicCount> seen_;
   bool writing_ = false;
   bool left_ = false;
-  Clock::time_point write_began_;
+  Clock::time_point write_deadline_;
 };
 
 }  // namespace

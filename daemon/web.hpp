@@ -22,7 +22,8 @@ struct WebContext {
   StreamHub& hub;
   std::size_t max_clients;
   std::size_t client_buffer_bytes;
-  bool loopback_only;  ///< bound to a loopback address
+  std::chrono::milliseconds stall;  ///< ServerLimits::stall
+  bool loopback_only;               ///< bound to a loopback address
 };
 
 /// Counts a connection for as long as it lives.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/accuracy.hpp"
 
-#include <unistd.h>
-
 #include <charconv>
 #include <filesystem>
 #include <sstream>
 
+#include "tools/bench/temporary_directory.hpp"
 #include "tools/kinemap/batch.hpp"
 #include "tools/kinemap/files.hpp"
 #include "tools/kinemap/map_files.hpp"
@@ -18,22 +17,6 @@ namespace kinemap::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A directory that is removed again with all that is in it.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() : path_(fs::temp_directory_path() / ("kinemap-bench-" + std::to_string(::getpid()))) {}
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  fs::path path_;
-};
 
 /// All that a simulated session depends on, as a directory name.
 std::string cache_key(const sim::SimOptions& sim) {

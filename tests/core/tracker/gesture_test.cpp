@@ -211,10 +211,12 @@ TEST(Trace, TooShortOrWithoutMotionIsRejectedAndCounted) {
   EXPECT_TRUE(without_motion.traces.empty());
   EXPECT_EQ(without_motion.stats.traces_rejected, 1u);
 
-  const auto brief = between_standing(0.9, [&](double t) { return with_arms(standing(), on_hip(), drawing(3 * t)); });
-  Sampling sampling;
-  sampling.blend_s = 0.3;
-  const Outcome too_short = track(perform(puppet, brief, sampling));
+  const auto brief = between_standing(2.0, [&](double t) { return with_arms(standing(), on_hip(), drawing(3 * t)); });
+  TrackerConfig config;
+  config.traces.min_duration_s = 1.8;
+  EXPECT_EQ(track(perform(puppet, brief), config).traces.size(), 1u);
+  config.traces.min_duration_s = 3.0;
+  const Outcome too_short = track(perform(puppet, brief), config);
   EXPECT_TRUE(too_short.traces.empty());
   EXPECT_EQ(too_short.stats.traces_rejected, 1u);
 }

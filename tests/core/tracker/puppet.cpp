@@ -193,7 +193,7 @@ Figure Puppet::balanced(Figure figure, double forward_m) const {
   };
   double low = -0.3;
   double high = 1.5;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 20; ++i) {
     const double middle = 0.5 * (low + high);
     (forward_of_mass(middle) < forward_m ? low : high) = middle;
   }

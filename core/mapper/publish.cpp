@@ -139,6 +139,14 @@ void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls,
   object.sigma.position_m = sigma_of(covariance, 1);
 }
 
+/// The wall's other stretches were seen too; it keeps the id that it had first.
+void add_record(const LandmarkRecord& record, MapObject& object) {
+  object.id = std::min(object.id, record.id);
+  object.observations += record.observations;
+  object.first_seen_s = std::min(object.first_seen_s, record.first_seen_s);
+  object.last_seen_s = std::max(object.last_seen_s, record.last_seen_s);
+}
+
 }  // namespace
 
 std::vector<MapObject> map_objects(const MapState& state, const std::vector<FiniteWall>& walls,
@@ -158,6 +166,8 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
       const auto wall = std::find_if(walls.begin(), walls.end(), [k](const FiniteWall& w) { return w.landmark == k; });
       if (wall == walls.end()) continue;
       describe_wall(state, *wall, config, object);
+      for (const std::size_t other : wall->stretches)
+        if (other != k) add_record(state.landmarks[other], object);
       if (marginals) set_wall_sigma(state, walls, *wall, *marginals, config, object);
     } else {
       if (landmark.kind == LandmarkKind::Table) describe_table(landmark, object);

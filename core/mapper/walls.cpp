@@ -13,23 +13,32 @@
 namespace kinemap {
 namespace {
 
-constexpr double kMinAngle = 0.35;   // rad: flatter intersections are no corners
-constexpr double kShortening = 3.0;  // a wall that was touched beyond the corner speaks louder against it than a gap
-constexpr double kMinLength = 0.2;   // m
+constexpr double kMinAngle = 0.35;     // rad: flatter intersections are no corners
+constexpr double kShortening = 3.0;    // a wall that was touched beyond the corner speaks louder against it than a gap
+constexpr double kMinLength = 0.2;     // m
+constexpr double kSameHeading = 0.15;  // rad: stretches of one wall agree so well
+constexpr double kSamePlane = 0.25;    // m
+constexpr double kOffPlaneCost = 4.0;  // a metre off the plane speaks as loud as so many metres of gap
+constexpr double kJoinCost = 0.5;      // a true corner is preferred to a continuation
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
-struct Piece {
+struct Stretch {
+  std::size_t landmark;
   WallFrame frame;
   Interval touched;
+
+  [[nodiscard]] double length() const { return touched.hi - touched.lo; }
 };
 
-struct Corner {
+struct Meeting {
   double head_s = 0.0;  ///< on the wall that ends there
   double tail_s = 0.0;  ///< on the wall that begins there
-  double cost = std::numeric_limits<double>::infinity();
+  double cost = kNever;
+  bool straight = false;  ///< b continues a
 };
 
 /// The corner where the head of `a` meets the tail of `b`.
-Corner corner(const Piece& a, const Piece& b, double join_max) {
+Meeting corner(const Stretch& a, const Stretch& b, double join_max) {
   Eigen::Matrix2d m;
   m.col(0) = a.frame.axis.head<2>();
   m.col(1) = -b.frame.axis.head<2>();
@@ -40,36 +49,88 @@ Corner corner(const Piece& a, const Piece& b, double join_max) {
   if (longer_a > join_max || longer_b > join_max || s[0] < a.touched.lo + kMinLength ||
       s[1] > b.touched.hi - kMinLength)
     return {};
-  return {s[0], s[1], cost(longer_a) + cost(longer_b)};
+  return {s[0], s[1], cost(longer_a) + cost(longer_b), false};
+}
+
+/// `b` goes on where `a` ends, in the same plane and on the same side.
+Meeting continuation(const Stretch& a, const Stretch& b, double join_max) {
+  if (a.frame.normal.dot(b.frame.normal) < std::cos(kSameHeading)) return {};
+  const Eigen::Vector3d head = a.frame.point(a.touched.hi), tail = b.frame.point(b.touched.lo);
+  const double gap = a.frame.along(tail) - a.touched.hi;
+  const double off = 0.5 * (std::abs(a.frame.distance(tail)) + std::abs(b.frame.distance(head)));
+  if (off > kSamePlane || gap > join_max || gap < -0.5 * std::min(a.length(), b.length())) return {};
+  return {a.touched.hi, b.touched.lo, std::abs(gap) + kOffPlaneCost * off + kJoinCost, true};
+}
+
+Meeting meeting(const Stretch& a, const Stretch& b, double join_max) {
+  const Meeting at = corner(a, b, join_max);
+  return at.cost < kNever ? at : continuation(a, b, join_max);
+}
+
+std::vector<Stretch> touched_stretches(const MapState& state) {
+  std::vector<Stretch> out;
+  for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
+    const auto& landmark = state.graph.landmarks[k];
+    if (!landmark.active || landmark.kind != graph::LandmarkKind::Wall) continue;
+    if (const auto touched = contact_interval(state, k)) out.push_back({k, WallFrame(landmark), *touched});
+  }
+  return out;
+}
+
+/// For each stretch the one that its head meets, least total cost.
+std::vector<std::optional<std::size_t>> join(const std::vector<Stretch>& stretches, double join_max) {
+  // One column for each tail, and one of its own for each head that meets nobody.
+  const auto n = static_cast<Eigen::Index>(stretches.size());
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(n, 2 * n, kNever);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = 0; b < n; ++b)
+      if (a != b) cost(a, b) = meeting(stretches[a], stretches[b], join_max).cost;
+    cost(a, n + a) = 2.0 * join_max;
+  }
+  auto tails = assign(cost);
+  for (auto& tail : tails)
+    if (tail && *tail >= stretches.size()) tail.reset();
+  return tails;
 }
 
 }  // namespace
 
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config) {
+  const auto stretches = touched_stretches(state);
+  const auto next = join(stretches, config.join_max_m);
+  const auto straight = [&](std::size_t k) {
+    return next[k] && meeting(stretches[k], stretches[*next[k]], config.join_max_m).straight;
+  };
+  std::vector<bool> continues(stretches.size(), false);  // the stretch before it is the same wall
+  for (std::size_t k = 0; k < stretches.size(); ++k)
+    if (straight(k)) continues[*next[k]] = true;
+
+  // Chains of stretches become walls; the longest stretch gives the plane.
   std::vector<FiniteWall> walls;
-  std::vector<Piece> pieces;
-  for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
-    const auto& landmark = state.graph.landmarks[k];
-    if (!landmark.active || landmark.kind != graph::LandmarkKind::Wall) continue;
-    const auto touched = contact_interval(state, k);
-    if (!touched) continue;
-    pieces.push_back({WallFrame(landmark), *touched});
-    walls.push_back({k, touched->lo, touched->hi, {}, {}});
+  std::vector<Stretch> planes;
+  std::vector<std::size_t> wall_of(stretches.size(), 0), last;
+  for (std::size_t start = 0; start < stretches.size(); ++start) {
+    if (continues[start]) continue;
+    FiniteWall wall;
+    std::size_t longest = start, k = start;
+    for (;; k = *next[k]) {
+      wall.stretches.push_back(stretches[k].landmark);
+      wall_of[k] = walls.size();
+      if (stretches[k].length() > stretches[longest].length()) longest = k;
+      if (!straight(k)) break;
+    }
+    Stretch plane = stretches[longest];
+    plane.touched = {plane.frame.along(stretches[start].frame.point(stretches[start].touched.lo)),
+                     plane.frame.along(stretches[k].frame.point(stretches[k].touched.hi))};
+    wall.landmark = plane.landmark;
+    wall.tail = plane.touched.lo, wall.head = plane.touched.hi;
+    walls.push_back(wall), planes.push_back(plane), last.push_back(k);
   }
-  // One column for each tail, and one of its own for each head that meets nobody.
-  const auto n = static_cast<Eigen::Index>(walls.size());
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(n, 2 * n, kNever);
-  for (Eigen::Index a = 0; a < n; ++a) {
-    for (Eigen::Index b = 0; b < n; ++b)
-      if (a != b) cost(a, b) = corner(pieces[a], pieces[b], config.join_max_m).cost;
-    cost(a, n + a) = 2.0 * config.join_max_m;
-  }
-  const auto tails = assign(cost);
   for (std::size_t a = 0; a < walls.size(); ++a) {
-    if (!tails[a] || *tails[a] >= walls.size()) continue;
-    const std::size_t b = *tails[a];
-    const Corner at = corner(pieces[a], pieces[b], config.join_max_m);
+    if (!next[last[a]]) continue;
+    const std::size_t b = wall_of[*next[last[a]]];
+    const Meeting at = corner(planes[a], planes[b], config.join_max_m);
+    if (at.cost == kNever) continue;
     walls[a].head = at.head_s, walls[a].next = b;
     walls[b].tail = at.tail_s, walls[b].previous = a;
   }
@@ -90,7 +151,9 @@ std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall
     Room room;
     room.height_m = config.height_m;
     for (const std::size_t k : ring) {
-      room.wall_ids.push_back(state.landmarks[walls[k].landmark].id);
+      std::uint32_t id = state.landmarks[walls[k].landmark].id;
+      for (const std::size_t stretch : walls[k].stretches) id = std::min(id, state.landmarks[stretch].id);
+      room.wall_ids.push_back(id);
       room.polygon.push_back(WallFrame(state.graph.landmarks[walls[k].landmark]).point(walls[k].tail).head<2>());
     }
     for (std::size_t k = 0; k < room.polygon.size(); ++k) {

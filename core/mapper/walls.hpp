@@ -13,8 +13,9 @@ namespace kinemap {
 
 /// A wall cut to its finite part: coordinates along its WallFrame, m.
 struct FiniteWall {
-  std::size_t landmark = 0;
-  double tail = 0.0;  ///< where it begins, going counter-clockwise round its room
+  std::size_t landmark = 0;            ///< gives the plane: of several stretches of one wall the longest
+  std::vector<std::size_t> stretches;  ///< all landmarks that make up the wall, that one included, from tail to head
+  double tail = 0.0;                   ///< where it begins, going counter-clockwise round its room
   double head = 0.0;
   std::optional<std::size_t> next;  ///< index of the wall whose tail its head meets
   std::optional<std::size_t> previous;

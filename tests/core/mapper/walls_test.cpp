@@ -105,6 +105,29 @@ TEST(CutWalls, AnEndThatMeetsNobodyStaysWhereItWasTouched) {
   EXPECT_FALSE(cut_walls(state, kConfig)[0].next);
 }
 
+TEST(CutWalls, StretchesOfOneWallAreOneWall) {
+  auto state = empty();
+  add_wall(state, {0.3, 0}, {1.5, 0});
+  add_wall(state, {2.8, 0.02}, {4.7, 0.02});  // a cupboard in between, and some drift
+  add_wall(state, {5, 0.3}, {5, 2.7});
+  add_wall(state, {4.7, 3}, {0.3, 3});
+  add_wall(state, {0, 2.7}, {0, 0.3});
+  const auto walls = cut_walls(state, kConfig);
+  ASSERT_EQ(walls.size(), 4u);
+  EXPECT_EQ(walls[0].landmark, 1u) << "the longer stretch gives the plane";
+  EXPECT_EQ(walls[0].stretches, (std::vector<std::size_t>{0, 1}));
+  EXPECT_NEAR(walls[0].head - walls[0].tail, 5.0, 1e-6);
+  const auto rooms = find_rooms(state, walls, kConfig);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area_m2, 5.0 * 2.98, 1e-6);
+}
+
+TEST(CutWalls, CollinearWallsOfTwoRoomsStayTwo) {
+  auto state = room({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, 0.4);
+  state = room({{0, 3.12}, {4, 3.12}, {4, 6}, {0, 6}}, 0.4, state);
+  expect_lengths(cut_walls(state, kConfig), {4, 3, 4, 3, 4, 2.88, 4, 2.88});
+}
+
 TEST(CutWalls, NoWallsNoRooms) { EXPECT_TRUE(cut_walls(empty(), kConfig).empty()); }
 
 TEST(RightAngles, LeaveAnObliqueWallAlone) {

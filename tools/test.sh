@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Sets up, builds and runs every test. KINEMAP_PRESET=asan, tsan or debug for another build than release; KINEMAP_JOBS compilers and tests
+# at a time (default 2).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=${KINEMAP_PRESET:-release}
+jobs=${KINEMAP_JOBS:-2}
+
+tools/setup.sh
+cmake --preset "$preset"
+cmake --build --preset "$preset" --parallel "$jobs"
+
+# JUnit's file has the counts whatever ctest prints; skipped tests are those that GoogleTest skipped, case by case.
+results=$PWD/build/$preset/test-results.xml
+log=$PWD/build/$preset/test.log
+code=0
+ctest --preset "$preset" --parallel "$jobs" --output-junit "$results" --output-log "$log" \
+  --test-output-size-passed 10000000 --test-output-size-failed 10000000 || code=$?
+python3 - "$results" <<'PYTHON'
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+passed = failed = skipped = 0
+for case in ElementTree.parse(sys.argv[1]).getroot().iter("testcase"):
+    output = case.findtext("system-out") or ""
+    # A GoogleTest program counts as its cases; anything else as one test.
+    cases = re.search(r"^\[=+\] (\d+) tests? from .* ran\.", output, re.MULTILINE)
+    if not cases:
+        ok = case.get("status") == "run"
+        passed, failed, skipped = passed + ok, failed + (case.get("status") == "fail"), skipped + (case.get("status") == "notrun")
+        continue
+    bad = re.search(r"^ *(\d+) FAILED TESTS?$", output, re.MULTILINE)
+    left_out = re.search(r"^\[  SKIPPED \] (\d+) tests?, listed below:", output, re.MULTILINE)
+    n_bad = int(bad.group(1)) if bad else int(case.get("status") == "fail")
+    n_skipped = int(left_out.group(1)) if left_out else 0
+    for line in re.findall(r"^.*Skipped\n.*$", output, re.MULTILINE):
+        print(line)
+    passed += int(cases.group(1)) - n_bad - n_skipped
+    failed += n_bad
+    skipped += n_skipped
+print(f"{passed} passed, {failed} failed, {skipped} skipped")
+PYTHON
+exit "$code"

@@ -45,6 +45,8 @@ struct TrackerConfig {
     double outside_hip_off_m = -0.02;
     double rest_speed_mps = 0.18;  ///< of the wrist against the pelvis, to begin; swinging and scratching are faster
     double hold_s = 0.5;           ///< the hand must rest for so long; a trace still begins when it came near
+    double both_hold_s =
+        2.0;  ///< the right hand on its own hip for so long ends it; a shorter while it may be drawing there
     double velocity_smoothing_s = 0.15;  ///< time constant of that velocity, against the jitter of the hand
     double speed_smoothing_s = 0.3;      ///< time constant of its magnitude
     double palm_m = 0.09;                ///< middle of the palm, along the hand from the wrist

@@ -23,6 +23,16 @@ double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vecto
   return (point - a - std::clamp(along, 0.0, 1.0) * (b - a)).norm();
 }
 
+// The right hand draws beside its hip now and then, so it must prove harder that it lies there.
+TrackerConfig::Gesture second_hand(TrackerConfig::Gesture config) {
+  config.hold_s = config.both_hold_s;
+  config.elbow_off_rad = config.elbow_on_rad;
+  config.hip_off_m = config.hip_on_m;
+  config.below_hip_off_m = config.below_hip_on_m;
+  config.outside_hip_off_m = config.outside_hip_on_m;
+  return config;
+}
+
 }  // namespace
 
 HandOnHip::HandOnHip(Side side, const TrackerConfig::Gesture& config)
@@ -31,10 +41,11 @@ HandOnHip::HandOnHip(Side side, const TrackerConfig::Gesture& config)
 HipState HandOnHip::step(const SuitFrame& frame) {
   const Segment hand = (side_ == Side::Left ? kLeft : kRight).hand;
   const double speed = speed_.step(frame.time_s, frame[Segment::Pelvis].inverse() * frame[hand].p);
+  const bool was_near = state_.near;
   state_.near = is_near(frame);
-  if (!state_.near || speed > config_.rest_speed_mps) moved_s_ = frame.time_s;
+  if (!was_near || (!state_.held && speed > config_.rest_speed_mps)) state_.rests_since_s = frame.time_s;
   // Once held, the hand may fidget as long as it stays near.
-  state_.held = state_.near && (state_.held || frame.time_s - moved_s_ >= config_.hold_s);
+  state_.held = state_.near && (state_.held || frame.time_s - state_.rests_since_s >= config_.hold_s);
   return state_;
 }
 
@@ -65,10 +76,15 @@ bool HandOnHip::is_near(const SuitFrame& frame) const {
          below_with_hysteresis(state_.near, inside_hip, -config_.outside_hip_on_m, -config_.outside_hip_off_m);
 }
 
-HipState GestureFold::step(const SuitFrame& frame) {
+GestureFold::GestureFold(const TrackerConfig::Gesture& config)
+    : left_(Side::Left, config), right_(Side::Right, second_hand(config)) {}
+
+GestureState GestureFold::step(const SuitFrame& frame) {
   const HipState left = left_.step(frame);
   const HipState right = right_.step(frame);
-  return {left.near && !right.held, left.held && !right.held};
+  GestureState state{left.near && !right.held, left.held && !right.held, std::nullopt};
+  if (right.held) state.both_since_s = right.rests_since_s;
+  return state;
 }
 
 void GestureFold::reset() {

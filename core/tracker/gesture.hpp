@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "core/body.hpp"
 #include "core/tracker/config.hpp"
 #include "core/tracker/smoothed_velocity.hpp"
@@ -14,6 +16,16 @@ enum class Side { Left, Right };
 struct HipState {
   bool near = false;
   bool held = false;
+  double rests_since_s = 0.0;  ///< stream time; of use while held
+};
+
+/// What the gesture says of one frame.
+struct GestureState {
+  bool near = false;  ///< the left hand is near its hip, the right one not held on its own
+  bool held = false;  ///< … and has come to rest there
+  /// Both hands rest on the hips, the right one since this stream time: from then on it was no gesture, as is only
+  /// known now.
+  std::optional<double> both_since_s;
 };
 
 /// Whether one hand lies on the hip of its side: elbow bent, hand at the iliac crest, hand at rest against the pelvis.
@@ -31,14 +43,13 @@ class HandOnHip {
   TrackerConfig::Gesture config_;
   SmoothedSpeed speed_;
   HipState state_;
-  double moved_s_ = 0.0;  ///< when the hand last moved or was not near
 };
 
 /// The modelling gesture: the left hand on its hip and the right hand free. Both hands on the hips is a way to stand.
 class GestureFold {
  public:
-  explicit GestureFold(const TrackerConfig::Gesture& config) : left_(Side::Left, config), right_(Side::Right, config) {}
-  HipState step(const SuitFrame& frame);
+  explicit GestureFold(const TrackerConfig::Gesture& config);
+  GestureState step(const SuitFrame& frame);
   void reset();
 
  private:

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/stature.hpp"
+
 namespace kinemap {
 
-std::optional<Trace> TraceFold::step(double time_s, HipState gesture) {
+std::optional<Trace> TraceFold::step(double time_s, const GestureState& gesture) {
   std::optional<Trace> ended;
+  if (open_ && gesture.both_since_s) seen_s_ = std::min(seen_s_, *gesture.both_since_s);
   const double unseen_s = time_s - seen_s_;
   if (open_ && unseen_s > (gesture.near ? config_.gap_s : config_.dropout_s)) ended = close();
   if (!gesture.near) return ended;
@@ -26,6 +29,7 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
   const Eigen::Vector3d p_hand_point(0, -config_.hand_point_m, 0);
   if (trace_.contacts.empty()) {
     first_wrist_ = T_odom_hand.p;
+    trace_.stature_m = stature_from_bones(frame);
     farthest_wrist_ = T_odom_hand.p;
   } else {
     if (frame.time_s <= seen_s_) stretch(T_odom_hand.p);

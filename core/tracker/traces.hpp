@@ -20,7 +20,7 @@ class TraceFold {
   /// Opens, keeps or ends the trace; returns one that has just ended and is long enough in time and space. It opens
   /// when the left hand comes near the hip, so that nothing of the right hand is missed, and is forgotten when the left
   /// hand does not stay.
-  std::optional<Trace> step(double time_s, HipState gesture);
+  std::optional<Trace> step(double time_s, const GestureState& gesture);
   /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
   /// frame.
   void record(const SuitFrame& frame, const KeyPose& latest);

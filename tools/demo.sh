@@ -32,10 +32,10 @@ done
 
 tools/setup.sh
 echo "demo: building (the first time takes some minutes)"
-cmake --preset release -DBUILD_TESTING=OFF -B build/demo >/dev/null
-cmake --build build/demo --target kinemapd kinemap --parallel "${KINEMAP_JOBS:-2}"
-kinemap=build/demo/tools/kinemap/kinemap
-kinemapd=build/demo/daemon/kinemapd
+cmake --preset release >/dev/null
+cmake --build --preset release --target kinemapd kinemap --parallel "${KINEMAP_JOBS:-2}"
+kinemap=build/release/tools/kinemap/kinemap
+kinemapd=build/release/daemon/kinemapd
 
 # The usual ports when they are free, others when not.
 read -r suit_port api_port < <(python3 - <<'PYTHON'

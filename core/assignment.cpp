@@ -8,8 +8,8 @@
 namespace kinemap {
 namespace {
 
-/// Shortest augmenting paths with potentials (Kuhn 1955, in the O(n³) form). `cost` is square and finite; returns for each column its row.
-/// Row and column 0 of the arrays are a sentinel.
+/// Shortest augmenting paths with potentials (Kuhn 1955, in the O(n³) form). `cost` is square and finite; returns for
+/// each column its row. Row and column 0 of the arrays are a sentinel.
 std::vector<Eigen::Index> solve_square(const Eigen::MatrixXd& cost) {
   const Eigen::Index n = cost.rows();
   std::vector<double> u(n + 1, 0.0), v(n + 1, 0.0);
@@ -56,7 +56,8 @@ std::vector<std::optional<std::size_t>> assign(const Eigen::MatrixXd& cost) {
   std::vector<std::optional<std::size_t>> columns(static_cast<std::size_t>(cost.rows()));
   const Eigen::Index n = std::max(cost.rows(), cost.cols());
   if (cost.size() == 0) return columns;
-  // A pair that is not allowed costs more than all allowed ones together, so that it is never taken for the sake of cost alone.
+  // A pair that is not allowed costs more than all allowed ones together, so that it is never taken for the sake of
+  // cost alone.
   const auto allowed = [](double c) { return std::isfinite(c) ? c : 0.0; };
   const double forbidden = 1.0 + cost.unaryExpr(allowed).sum();
   Eigen::MatrixXd square = Eigen::MatrixXd::Constant(n, n, forbidden);

@@ -13,22 +13,42 @@ namespace kinemap {
 
 /// The 23 body segments of MVN, in stream order (index = MVN segment id − 1). A segment's origin is its proximal joint:
 /// Pelvis = mid-point of the hips, UpperLeg = hip, LowerLeg = knee, Foot = ankle, UpperArm = shoulder, Forearm = elbow,
-/// Hand = wrist. All segment frames are aligned with the world (x forward, y left, z up) in the T-pose, so the right arm
-/// and hand point along their local −y, the left ones along +y, legs along −z, feet along +x.
+/// Hand = wrist. All segment frames are aligned with the world (x forward, y left, z up) in the T-pose, so the right
+/// arm and hand point along their local −y, the left ones along +y, legs along −z, feet along +x.
 enum class Segment : std::uint8_t {
-  Pelvis, L5, L3, T12, T8, Neck, Head,
-  RightShoulder, RightUpperArm, RightForearm, RightHand,
-  LeftShoulder, LeftUpperArm, LeftForearm, LeftHand,
-  RightUpperLeg, RightLowerLeg, RightFoot, RightToe,
-  LeftUpperLeg, LeftLowerLeg, LeftFoot, LeftToe,
+  Pelvis,
+  L5,
+  L3,
+  T12,
+  T8,
+  Neck,
+  Head,
+  RightShoulder,
+  RightUpperArm,
+  RightForearm,
+  RightHand,
+  LeftShoulder,
+  LeftUpperArm,
+  LeftForearm,
+  LeftHand,
+  RightUpperLeg,
+  RightLowerLeg,
+  RightFoot,
+  RightToe,
+  LeftUpperLeg,
+  LeftLowerLeg,
+  LeftFoot,
+  LeftToe,
 };
 inline constexpr std::size_t kSegmentCount = 23;
 
-/// One whole, checked sample of one wearer. All poses are `T_odom_segment`: the suit's world frame (z up, metres), which drifts.
+/// One whole, checked sample of one wearer. All poses are `T_odom_segment`: the suit's world frame (z up, metres),
+/// which drifts.
 struct SuitFrame {
-  double time_s = 0.0;       ///< stream time since the first frame of this wearer; never decreases
-  std::uint64_t index = 0;   ///< sample counter, unwrapped; gaps are lost samples
-  bool discontinuity = false;  ///< first frame after a restart of the suit or a jump of its clock: no odometry from the frame before
+  double time_s = 0.0;      ///< stream time since the first frame of this wearer; never decreases
+  std::uint64_t index = 0;  ///< sample counter, unwrapped; gaps are lost samples
+  bool discontinuity =
+      false;  ///< first frame after a restart of the suit or a jump of its clock: no odometry from the frame before
   std::array<Pose, kSegmentCount> segments;
   std::optional<Eigen::Vector3d> center_of_mass;  ///< odom frame, m; only when the suit streams type 24
 

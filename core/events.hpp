@@ -17,10 +17,11 @@ struct KeyPose {
   KeyPoseId id = 0;
   double time_s = 0.0;
   Pose T_odom_pelvis;
-  double path_m = 0.0;    ///< length of the level pelvis path since the key pose before
-  double turn_rad = 0.0;  ///< sum of |heading change| since the key pose before
+  double path_m = 0.0;         ///< length of the level pelvis path since the key pose before
+  double turn_rad = 0.0;       ///< sum of |heading change| since the key pose before
   bool discontinuity = false;  ///< nothing is known of the motion from the key pose before (suit restarted)
-  /// Point under the ankle of the foot that carries the weight, on the sole, in the pelvis frame (m); absent in the air or when sitting.
+  /// Point under the ankle of the foot that carries the weight, on the sole, in the pelvis frame (m); absent in the air
+  /// or when sitting.
   std::optional<Eigen::Vector3d> p_pelvis_stance;
 };
 
@@ -28,7 +29,8 @@ struct KeyPose {
 struct HandContact {
   double time_s = 0.0;
   KeyPoseId key_pose = 0;
-  Pose T_key_hand;  ///< right-hand segment (origin: the wrist) in the key pose's pelvis frame; odometry in between included
+  Pose T_key_hand;  ///< right-hand segment (origin: the wrist) in the key pose's pelvis frame; odometry in between
+                    ///< included
 };
 
 /// All that the right hand did during one modelling gesture (left hand on the hip), lead-in and lead-out included.
@@ -44,9 +46,9 @@ struct Sitting {
   double begin_s = 0.0;
   double end_s = 0.0;
   KeyPoseId key_pose = 0;
-  Pose T_key_seat;          ///< seat centre at seat height, level, +x where the sitter faces; in the key pose's pelvis frame
-  double height_m = 0.0;    ///< seat surface over the floor under the feet
-  double spread_m = 0.0;    ///< standard deviation of the seat position over the still part
+  Pose T_key_seat;  ///< seat centre at seat height, level, +x where the sitter faces; in the key pose's pelvis frame
+  double height_m = 0.0;  ///< seat surface over the floor under the feet
+  double spread_m = 0.0;  ///< standard deviation of the seat position over the still part
 };
 
 using Event = std::variant<KeyPose, Trace, Sitting>;

@@ -74,17 +74,18 @@ struct GraphSummary {
   std::size_t key_poses = 0;
   std::size_t landmarks = 0;
   std::size_t contacts = 0;
-  std::size_t loop_closures = 0;           ///< observations associated with an object that was there
-  std::size_t loop_closures_revoked = 0;   ///< closures that the optimum contradicted, taken back
+  std::size_t loop_closures = 0;          ///< observations associated with an object that was there
+  std::size_t loop_closures_revoked = 0;  ///< closures that the optimum contradicted, taken back
   std::size_t optimisations = 0;
   std::size_t optimisations_failed = 0;
   double last_cost = 0.0;
 };
 
-/// Everything the mapper knows at one instant. Immutable once published; shared between threads by shared_ptr<const MapSnapshot>.
+/// Everything the mapper knows at one instant. Immutable once published; shared between threads by shared_ptr<const
+/// MapSnapshot>.
 struct MapSnapshot {
-  std::uint64_t revision = 0;  ///< grows by one at each publication
-  double time_s = 0.0;         ///< stream time of the newest event in it
+  std::uint64_t revision = 0;      ///< grows by one at each publication
+  double time_s = 0.0;             ///< stream time of the newest event in it
   std::vector<MapObject> objects;  ///< by ascending id
   std::vector<Room> rooms;
   std::vector<TrajectoryPose> trajectory;

@@ -17,9 +17,11 @@ using graph::Edge;
 using graph::Landmark;
 using graph::LandmarkKind;
 
-constexpr double kOnPlane = 0.25;  // m: contacts farther from their wall do not speak of its extent
-constexpr double kMaxTurn = 0.8;   // rad: objects are not mistaken for ones that stand crosswise
-constexpr double kAlongGap = 0.3;  // m: two stretches of one wall may miss each other by so much
+constexpr double kOnPlane = 0.25;    // m: contacts farther from their wall do not speak of its extent
+constexpr double kMaxTurn = 0.8;     // rad: objects are not mistaken for ones that stand crosswise
+constexpr double kOverlap = 0.3;     // part of the shorter of two stretches that two visits to one wall share
+constexpr double kAlongSigma = 0.1;  // m: what two visits differ by along the wall beyond the drift between them
+constexpr double kAlongGate = 4.0;   // squared sigmas; stretches that only the drift might bring together stay two
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
@@ -150,9 +152,10 @@ double along_wall_distance(const MapState& state, const graph::Marginals& margin
   if (!ia || !ib || !visit_a || !visit_b) return 0.0;
   const WallFrame fa(state.graph.landmarks[a]), fb(state.graph.landmarks[b]);
   const double s0 = fb.along(fa.point(ia->lo)), s1 = fb.along(fa.point(ia->hi));
-  const double gap = std::max({0.0, std::min(s0, s1) - ib->hi, ib->lo - std::max(s0, s1)});
-  if (gap <= 0.0) return 0.0;
-  return gap * gap / (squared(kAlongGap) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
+  const double shared = std::min(std::max(s0, s1), ib->hi) - std::max(std::min(s0, s1), ib->lo);
+  const double missing = kOverlap * std::min(std::abs(s1 - s0), ib->hi - ib->lo) - shared;
+  if (missing <= 0.0) return 0.0;
+  return squared(missing) / (squared(kAlongSigma) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
 }
 
 Edge turned(Edge edge, int quarter_turns) {
@@ -214,7 +217,11 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     s.diagonal() += d.noise.cwiseAbs2();
     double distance = e.dot(s.ldlt().solve(e));
     int dimensions = static_cast<int>(e.size());
-    if (a.kind == LandmarkKind::Wall) distance += along_wall_distance(state, marginals, newcomer, other), ++dimensions;
+    if (a.kind == LandmarkKind::Wall) {
+      const double along = along_wall_distance(state, marginals, newcomer, other);
+      if (along > kAlongGate) continue;
+      distance += along, ++dimensions;
+    }
     if (distance <= gate(config.gate_sigma, dimensions)) out.push_back({other, d.quarter_turns, distance, dimensions});
   }
   std::sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.distance < y.distance; });

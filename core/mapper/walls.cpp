@@ -85,7 +85,7 @@ std::vector<std::optional<std::size_t>> join(const std::vector<Stretch>& stretch
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b)
       if (a != b) cost(a, b) = meeting(stretches[a], stretches[b], join_max).cost;
-    cost(a, n + a) = 2.0 * join_max;
+    cost(a, n + a) = 1.5 * join_max;
   }
   auto tails = assign(cost);
   for (auto& tail : tails)

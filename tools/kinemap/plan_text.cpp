@@ -131,7 +131,7 @@ std::string plan_text(const Plan& plan, int columns, int rows, bool colour) {
       std::min((2.0 * columns - 4.0) / extent.x(), (4.0 * rows - 4.0) / std::max(extent.y(), 1e-3));
   const Scale scale{plan.low, plan.high, dots_per_m};
   const Eigen::Vector2d dots = extent * dots_per_m;
-  Canvas canvas(static_cast<int>(dots.x() + 4.0) / 2 + 1, static_cast<int>(dots.y() + 4.0) / 4 + 1);
+  Canvas canvas((static_cast<int>(dots.x()) + 2) / 2 + 1, (static_cast<int>(dots.y()) + 2) / 4 + 1);
 
   // Every other step of the path: a trail, not a wall.
   for (std::size_t i = 1; i < plan.path.size(); i += 2) {
@@ -141,8 +141,10 @@ std::string plan_text(const Plan& plan, int columns, int rows, bool colour) {
   for (const Plan::Item& item : plan.items) draw_item(item, scale, canvas);
   for (const Plan::Item& item : plan.items)
     canvas.label(scale(item.centre), plan_letter(item.type) + std::to_string(item.id), ink_of(item.type));
-  return canvas.text(colour) + scale_bar(dots_per_m) + "   W wall  T table  S screen  C chair" +
-         (plan.path.empty() ? "\n" : "  ⠂⠐ path\n");
+  const std::string key = std::string("W wall  T table  S screen  C chair") + (plan.path.empty() ? "" : "  ⠂⠐ path");
+  const std::string bar = scale_bar(dots_per_m);
+  const bool beside = display_width(bar) + 3 + display_width(key) <= static_cast<std::size_t>(columns);
+  return canvas.text(colour) + bar + (beside ? "   " : "\n") + key + '\n';
 }
 
 }  // namespace kinemap::cli

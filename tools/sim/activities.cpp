@@ -24,8 +24,8 @@ void phone(Composer& c) {
   arm.to(c.now(), c.now() + 0.8, postures::phone_at_ear(c.wearer(), side));
   c.stand(0.8 + c.random().uniform(1.5, 4.0));
   if (c.random().chance(0.5)) {  // paces while talking
-    const Vec2 goal = c.planner().pushed_clear(
-        c.position() + direction(c.random().uniform(-kPi, kPi)) * c.random().uniform(0.6, 1.4), 0.45);
+    const Vec2 away = direction(c.random().uniform(-kPi, kPi)) * c.random().uniform(0.6, 1.4);
+    const Vec2 goal = c.planner().pushed_clear(c.position() + away, c.position(), 0.45);
     c.walk_to(goal, std::nullopt);
     c.stand(c.random().uniform(0.5, 1.5));
   }
@@ -205,7 +205,7 @@ bool sit_on(Composer& c, const Chair& chair) {
     c.stand(0.8 + random.uniform(0.8, 2.0));
     c.score().twist.to(c.now(), c.now() + 0.8, 0.0);
   }
-  c.stand(random.uniform(2.5, 5.0));
+  c.stand(random.uniform(2.0, 4.0));
   const double up = c.now();
   rise(c);
   c.label({begin, c.now(), "sit", chair.id, seated, up});

@@ -28,9 +28,9 @@ struct ShellPlan {
 
 ShellPlan draw_shell(const SimOptions& options, int count, bool l_shape, Random& random) {
   ShellPlan plan;
-  const double longest = count == 1 ? 9.0 : count == 2 ? 6.0 : 4.6;
+  const double longest = count == 1 ? 9.0 : count == 2 ? 5.6 : 4.4;
   plan.width = random.uniform(l_shape ? 4.4 : 3.0, longest);
-  plan.depth = random.uniform(l_shape ? 4.4 : 3.0, count == 1 ? 6.5 : longest - 0.4);
+  plan.depth = random.uniform(l_shape ? 4.4 : 3.0, count == 1 ? 6.5 : longest - 0.2);
   if (l_shape) {
     plan.width = std::max(plan.width, 4.4);
     plan.depth = std::max(plan.depth, 4.4);
@@ -172,10 +172,10 @@ double Building::clearance(const Vec2& p) const {
   return least;
 }
 
-Building make_building(const SimOptions& options, double stature_m, Random& random) {
+Building make_building(const SimOptions& options, double highest_touch_m, Random& random) {
   Building building;
   build_shells(building, options, random);
-  furnish(building, stature_m, random);
+  furnish(building, highest_touch_m, random);
   int id = 1;
   for (auto& wall : building.walls) wall.id = id++;
   for (auto& table : building.tables) table.id = id++;

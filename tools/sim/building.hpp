@@ -98,10 +98,11 @@ struct Building {
   [[nodiscard]] double clearance(const Vec2& p) const;
 };
 
-/// Draws a building: shells joined by doorways, then furniture with room to walk around it.
-Building make_building(const SimOptions& options, double stature_m, Random& random);
+/// Draws a building: shells joined by doorways, then furniture with room to walk around it. Nothing that is to be
+/// touched lies above `highest_touch_m`.
+Building make_building(const SimOptions& options, double highest_touch_m, Random& random);
 
 /// Puts tables, screens and chairs into the rooms (part of make_building).
-void furnish(Building& building, double stature_m, Random& random);
+void furnish(Building& building, double highest_touch_m, Random& random);
 
 }  // namespace kinemap::sim

@@ -5,7 +5,7 @@ namespace kinemap::sim {
 
 namespace {
 
-constexpr double kTurnRate = 1.6;      ///< rad/s, on the spot
+constexpr double kTurnRate = 2.0;      ///< rad/s, on the spot
 constexpr double kCurveRate = 1.5;     ///< rad/s, while walking
 constexpr double kAcceleration = 0.9;  ///< m/s²
 

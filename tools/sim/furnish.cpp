@@ -19,16 +19,17 @@ struct WallSpot {
 
 class Furnisher {
  public:
-  Furnisher(Building& building, double stature_m, Random& random)
-      : b_(building), stature_m_(stature_m), random_(random) {
+  Furnisher(Building& building, double highest_touch_m, Random& random)
+      : b_(building), highest_touch_m_(highest_touch_m), random_(random) {
     for (const auto& door : b_.doorways) keep_free_.push_back({door.centre, door.heading, {1.0, 0.75}});
   }
 
   void run() {
     const auto rooms = static_cast<int>(b_.rooms.size());
-    const int tables = std::clamp(random_.integer(2, 3) + (rooms - 1) / 2, 2, 4);
-    const int big = random_.integer(1, 2), small = random_.integer(1, std::min(3, tables));
-    const int chairs = random_.integer(2, rooms == 1 ? 3 : 4);
+    // In three rooms the walls alone fill most of the time that a session has.
+    const int tables = random_.integer(2, rooms == 2 ? 4 : 3), big = random_.integer(1, rooms == 3 ? 1 : 2);
+    const int small = random_.integer(1, std::min(rooms == 3 ? 2 : 3, tables)),
+              chairs = random_.integer(2, rooms == 2 ? 4 : 3);
     // What needs most room goes first. The rooms take turns, so that none stays empty.
     for (int i = 0; i < tables; ++i) try_rooms(i, [this](int room) { return add_table(room); });
     for (int i = 0; i < big; ++i) try_rooms(i + 1, [this](int room) { return add_big_screen(room); });
@@ -92,7 +93,7 @@ class Furnisher {
       table.top.half = Vec2(random_.uniform(1.0, i < kTries / 2 ? 2.0 : 1.3), random_.uniform(0.6, 1.0)) / 2;
       if (table.top.half.y() > 0.7 * table.top.half.x()) table.top.half.y() = 0.7 * table.top.half.x();
       table.top.half.y() = std::max(table.top.half.y(), 0.3);
-      if (!(random_.chance(0.55) ? place_at_wall(table) : place_freely(table))) continue;
+      if (!(random_.chance(0.45) ? place_at_wall(table) : place_freely(table))) continue;
       if (!keeps_free(table.top) || gap_to_furniture(table.top) < kWalkway) continue;
       table.height = random_.uniform(0.70, 0.78);
       b_.tables.push_back(table);
@@ -137,8 +138,8 @@ class Furnisher {
       const double offset = stand ? random_.uniform(0.35, 0.6) : random_.uniform(0.04, 0.09);
       const Vec2 front = spot->wall->a + spot->wall->along() * spot->u + spot->wall->inward() * offset;
       screen.heading = heading_of(spot->wall->inward());
-      // The upper edge must be in reach: arms end at about 1.25 statures.
-      const double top = std::min(random_.uniform(1.60, 1.85), 1.08 * stature_m_);
+      // The upper edge must be in reach.
+      const double top = std::min(random_.uniform(1.60, 1.85), highest_touch_m_);
       screen.centre = lift(front, top - screen.height / 2);
       const Vec2 in = spot->wall->inward();
       const Footprint body{front - in * (offset / 2), screen.heading, {offset / 2, screen.width / 2}};
@@ -195,7 +196,7 @@ class Furnisher {
       if (!spot) return false;
       Chair chair;
       chair.room = room;
-      const bool at_wall = random_.chance(0.5);
+      const bool at_wall = random_.chance(0.35);
       const double off = at_wall ? random_.uniform(0.27, 0.35) : random_.uniform(1.1, 2.5);
       chair.seat = spot->wall->a + spot->wall->along() * spot->u + spot->wall->inward() * off;
       chair.heading = heading_of(spot->wall->inward());
@@ -218,13 +219,15 @@ class Furnisher {
   }
 
   Building& b_;
-  double stature_m_;
+  double highest_touch_m_;
   Random& random_;
   std::vector<Footprint> keep_free_;
 };
 
 }  // namespace
 
-void furnish(Building& building, double stature_m, Random& random) { Furnisher(building, stature_m, random).run(); }
+void furnish(Building& building, double highest_touch_m, Random& random) {
+  Furnisher(building, highest_touch_m, random).run();
+}
 
 }  // namespace kinemap::sim

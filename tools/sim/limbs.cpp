@@ -68,10 +68,9 @@ bool solve_arm(const Body& body, Pose23& pose, Side side, const Vec3& wrist, con
   const Vec3 yu = s * u, yf = s * f;
   pose[upper].q = from_axes(yu.cross(hinge), yu, hinge);
   const Quat straight = from_axes(yf.cross(hinge), yf, hinge);
-  // Turning the hand over turns the forearm by about half of it.
+  // Turning the hand over turns the forearm by a part of it.
   const Vec3 z_hand = straight.conjugate() * (hand * Vec3::UnitZ());
-  const double roll = std::hypot(z_hand.x(), z_hand.z()) > 0.2 ? std::atan2(z_hand.x(), z_hand.z()) : 0.0;
-  pose[fore].q = straight * about_y(0.5 * roll);
+  pose[fore].q = straight * about_y(0.8 * z_hand.x());
   pose[last].q = hand;
   place_chain(body, pose, fore, last);
   return arm.reached;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStraight = 0.985;  ///< part of its length to which a standing leg is stretched
 constexpr double kArmReach = 0.93;   ///< part of the arm's length beyond which one leans instead
-constexpr double kMaxLean = 1.0;     ///< rad
+constexpr double kMaxLean = 1.15;    ///< rad
 
 double time_of(const Score& score, std::size_t frame) { return static_cast<double>(frame) / score.rate_hz; }
 
@@ -165,7 +165,10 @@ void Performer::place_trunk(Pose23& pose, std::size_t i, double lean, double twi
 
 Performer::ArmAim Performer::aim_for_touch(const TouchPoint& touch, const Vec3& shoulder) const {
   // Fingers point partly where they should and partly where the arm points anyway; a flat palm has no choice.
-  const double own = wearer_.palm ? 0.0 : 0.45;
+  // The farther the reach, the straighter wrist and arm.
+  const double arm = wearer_.body.upper_arm(Side::Right) + wearer_.body.forearm(Side::Right);
+  const double stretch = (touch.p - shoulder).norm() / (arm - wearer_.p_hand_touch.y());
+  const double own = (wearer_.palm ? 0.0 : 0.45) + (wearer_.palm ? 0.7 : 0.5) * smooth_step((stretch - 0.75) / 0.22);
   const Vec3 fingers = (1.0 - own) * touch.fingers + own * (touch.p - shoulder).normalized();
   const Quat hand = hand_orientation(Side::Right, fingers, touch.palm);
   return {touch.p - hand * wearer_.p_hand_touch, Vec3::Zero(), hand};
@@ -212,21 +215,29 @@ Performer::ArmAim Performer::aim(const Pose23& pose, Side side, const ArmGoal& g
 }
 
 void Performer::place_arm(Pose23& pose, Side side, std::size_t frame) const {
+  const Body& body = wearer_.body;
+  const std::size_t upper = side == Side::Right ? kRightUpperArm : kLeftUpperArm;
   const auto blend = (side == Side::Right ? score_.right : score_.left).at(time_of(score_, frame));
-  place_chain(wearer_.body, pose, side == Side::Right ? kRightShoulder : kLeftShoulder,
-              side == Side::Right ? kRightUpperArm : kLeftUpperArm);
-  ArmAim to = aim(pose, side, *blend.to, frame);
-  if (blend.weight < 1.0) {
-    const ArmAim from = aim(pose, side, *blend.from, frame);
-    const double w = blend.weight;
-    to.wrist = from.wrist + (to.wrist - from.wrist) * w;
-    // A hand is raised a little on its way to a surface or off it.
-    const bool touch = blend.to->anchor == ArmGoal::Anchor::Touch || blend.from->anchor == ArmGoal::Anchor::Touch;
-    if (touch) to.wrist.z() += 0.07 * std::sin(kPi * w);
-    to.elbow = from.elbow.normalized() * (1.0 - w) + to.elbow.normalized() * w;
-    to.hand = from.hand.slerp(w, to.hand);
-  }
-  solve_arm(wearer_.body, pose, side, to.wrist, to.elbow, to.hand);
+  place_chain(body, pose, upper - 1, upper);
+  const ArmAim to = aim(pose, side, *blend.to, frame);
+  solve_arm(body, pose, side, to.wrist, to.elbow, to.hand);
+  if (blend.weight >= 1.0) return;
+  // From one posture to the next each joint turns steadily: the hand goes in an arc, as hands do.
+  Pose23 before = pose;
+  const ArmAim from = aim(pose, side, *blend.from, frame);
+  solve_arm(body, before, side, from.wrist, from.elbow, from.hand);
+  const Quat chest = pose[kT8].q, chest_back = chest.conjugate();
+  const auto turn = [&](const Quat& a, const Quat& b) { return a.slerp(blend.weight, b); };
+  const Quat arm = turn(chest_back * before[upper].q, chest_back * pose[upper].q);
+  const Quat elbow =
+      turn(before[upper].q.conjugate() * before[upper + 1].q, pose[upper].q.conjugate() * pose[upper + 1].q);
+  const Quat hand_from = chest_back * before[upper + 2].q, hand_to = chest_back * pose[upper + 2].q;
+  pose[upper].q = (chest * arm).normalized();
+  pose[upper + 1].q = (pose[upper].q * elbow).normalized();
+  // By way of a straight wrist, so that even opposite postures have one way between them.
+  const Quat straight = chest_back * pose[upper + 1].q;
+  pose[upper + 2].q = (chest * turn(turn(hand_from, straight), turn(straight, hand_to))).normalized();
+  place_chain(body, pose, upper, upper + 2);
 }
 
 void Performer::place_leg(Pose23& pose, Side side, std::size_t frame) const {

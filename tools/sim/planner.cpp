@@ -108,9 +108,11 @@ std::vector<Vec2> Planner::search(Cell from, Cell to) const {
 bool Planner::straight_is_clear(const Vec2& a, const Vec2& b) const {
   const int pieces = std::max(1, static_cast<int>((b - a).norm() / 0.06));
   // Never nearer than the ends' own clearance or the comfortable one, whichever is less.
-  const double least = std::min({kComfort - 0.1, clearance(a), clearance(b)});
+  const double least = std::max(0.20, std::min({kComfort - 0.1, clearance(a), clearance(b)}));
   for (int i = 1; i < pieces; ++i) {
-    if (clearance(a + (b - a) * (static_cast<double>(i) / pieces)) < least - 1e-3) return false;
+    const Vec2 p = a + (b - a) * (static_cast<double>(i) / pieces);
+    const bool leaving = std::min((p - a).norm(), (p - b).norm()) < 0.15;  // ends may be nearer to things
+    if (clearance(p) < (leaving ? std::min(least, 0.15) : least) - 1e-3) return false;
   }
   return true;
 }
@@ -140,8 +142,9 @@ std::vector<Vec2> Planner::way(const Vec2& from, const Vec2& to) const {
   return resampled(rounded(rounded(rounded(dense))), 0.05);
 }
 
-Vec2 Planner::pushed_clear(Vec2 p, double margin) const {
+Vec2 Planner::pushed_clear(Vec2 p, const Vec2& inside, double margin) const {
   constexpr double kProbe = 0.01;
+  for (int i = 0; i < 50 && clearance(p) < 0.03; ++i) p += (inside - p) * 0.1;
   for (int i = 0; i < 40; ++i) {
     const double here = clearance(p);
     if (here >= margin) break;

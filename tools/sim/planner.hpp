@@ -16,8 +16,9 @@ class Planner {
   /// Points of a way from `from` to `to`, both included, some 5 cm apart. Empty when there is none.
   [[nodiscard]] std::vector<Vec2> way(const Vec2& from, const Vec2& to) const;
 
-  /// `p` moved the least that gives it `margin` of clearance (m); as far as that is possible.
-  [[nodiscard]] Vec2 pushed_clear(Vec2 p, double margin) const;
+  /// `p` moved a little so that it has `margin` of clearance (m), as far as that is possible. From inside a wall or a
+  /// piece of furniture it goes back towards `inside`, a point of the open floor near it.
+  [[nodiscard]] Vec2 pushed_clear(Vec2 p, const Vec2& inside, double margin) const;
 
   [[nodiscard]] double clearance(const Vec2& p) const { return building_.clearance(p); }
 

@@ -67,7 +67,7 @@ ArmGoal on_thigh(const Wearer& w, Side s) {
 ArmGoal touching() {
   ArmGoal g;
   g.anchor = Anchor::Touch;
-  g.elbow = {-0.35, -0.55, -0.75};
+  g.elbow = {-0.15, -0.7, -0.7};
   return g;
 }
 

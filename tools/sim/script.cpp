@@ -8,7 +8,7 @@ namespace kinemap::sim {
 
 namespace {
 
-constexpr double kShortest_s = 180.0, kLongest_s = 352.0;
+constexpr double kShortest_s = 180.0, kLongest_s = 342.0;
 
 /// Something to visit: which list, which index.
 struct Stop {
@@ -100,7 +100,7 @@ class Tour {
   void go_round(int round, int rounds) {
     // In later rounds as much as time allows; in the first nearly everything.
     const double left_s = kLongest_s - composer_.now(), rounds_left = std::max(1, rounds - round);
-    const double share = round == 0 ? 0.97 : std::clamp(left_s / rounds_left / first_round_s_, 0.2, 0.95);
+    const double share = round == 0 ? 1.0 : std::clamp(left_s / rounds_left / first_round_s_, 0.25, 0.95);
     std::vector<int> rooms;
     for (std::size_t i = 0; i < building_.rooms.size(); ++i) rooms.push_back(static_cast<int>(i));
     if (round % 2 == 1) std::reverse(rooms.begin(), rooms.end());
@@ -108,7 +108,8 @@ class Tour {
       ccw_[static_cast<std::size_t>(room)] = random_.chance(0.7);
       for (const auto& stop : in_order(room)) {
         const bool wall = stop.kind == Stop::Kind::Wall;
-        if (composer_.now() > kLongest_s - 15.0 || !random_.chance(wall && round == 0 ? 1.0 : share)) continue;
+        const double wanted = round > 0 ? share : wall ? 1.0 : late(room) ? 0.6 : 0.97;
+        if (composer_.now() > kLongest_s - 18.0 || !random_.chance(wanted)) continue;
         if (round == 0) close_loop(stop);
         maybe_distract();
         visit(stop, false);
@@ -119,16 +120,22 @@ class Tour {
     if (composer_.now() < kLongest_s) composer_.walk_to(home_, std::nullopt);
   }
 
+  /// Whether the first round takes so long that little time would be left for a second one; `room` counts from 0.
+  [[nodiscard]] bool late(int room) const {
+    return composer_.now() > 0.6 * kLongest_s * (room + 0.7) / static_cast<double>(building_.rooms.size());
+  }
+
   /// Touches the nearest known object again when it is time to.
   void close_loop(const Stop& coming) {
-    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2) return;
+    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2 || composer_.now() > 0.6 * kLongest_s)
+      return;
     const Stop* best = nullptr;
     double least = 1e9;
     for (const auto& s : stops_) {
       if (s.id == coming.id || s.id == latest_ || s.room != coming.room || s.kind == Stop::Kind::Chair ||
           touched_.count(s.id) == 0)
         continue;
-      const double d = (s.place - composer_.position()).norm() - (s.kind == Stop::Kind::Wall ? 0.0 : 0.5);
+      const double d = (s.place - composer_.position()).norm() - (s.kind == Stop::Kind::Wall ? 1.0 : 0.0);
       if (d < least) least = d, best = &s;
     }
     if (best == nullptr) return;
@@ -139,7 +146,7 @@ class Tour {
   void maybe_distract() {
     if (!options_.distractors || composer_.now() < next_distractor_s_) return;
     distract(composer_);
-    next_distractor_s_ = composer_.now() + random_.uniform(20.0, 60.0);
+    next_distractor_s_ = composer_.now() + random_.uniform(30.0, 80.0);
   }
 
   void visit(const Stop& stop, bool brief) {

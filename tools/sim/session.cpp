@@ -16,8 +16,8 @@ Wearer make_wearer(const SimOptions& options, const DriftColumn& column, Random&
   w.p_hand_touch = Vec3(0.0, -along, -thick);
   w.elbow_angle = radians(random.uniform(60.0, 100.0));
   w.hip_hand = Vec2(random.uniform(-0.05, 0.05), random.uniform(-0.01, 0.04));
-  w.walk_speed = random.uniform(0.85, 1.15);
-  w.trace_speed = random.uniform(0.22, 0.34);
+  w.walk_speed = random.uniform(0.9, 1.2);
+  w.trace_speed = random.uniform(0.24, 0.34);
   w.sloppiness = options.sloppiness;
   return w;
 }
@@ -64,7 +64,7 @@ Session::Session(const SimOptions& options)
       body_random_(options.seed, 4),
       suit_random_(options.seed, 5),
       wearer_(make_wearer(options, column_, wearer_random_)),
-      building_(make_building(options, wearer_.body.stature, building_random_)),
+      building_(make_building(options, (wearer_.palm ? 1.0 : 1.07) * wearer_.body.stature, building_random_)),
       script_(write_script(options, building_, wearer_, script_random_)),
       gait_(make_gait(script_.score, wearer_.body)) {
   performer_ = std::make_unique<Performer>(script_.score, gait_, wearer_, body_random_);

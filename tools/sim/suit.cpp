@@ -132,9 +132,9 @@ void Suit::report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out
   const Quat knee_turn = tilt_now_ * about_z(slip_.heading[i]);
   const Vec3 knee = knee_turn * (truth[foot - 1].p - 0.5 * (truth[foot].p + truth[foot - 2].p));
   Vec3 ankle = ball - out[foot].q * body_.offset[foot + 1];
-  if (score_.kneel.at(static_cast<double>(i) / score_.rate_hz) >
-      0.0) {  // knees on the floor: the feet follow the pelvis
-    ankle = out[kPelvis].p + knee_turn * (truth[foot].p - truth[kPelvis].p);
+  const double kneel = score_.kneel.at(static_cast<double>(i) / score_.rate_hz);
+  if (kneel > 0.0) {  // knees on the floor: the feet follow the pelvis
+    ankle += kneel * (out[kPelvis].p + knee_turn * (truth[foot].p - truth[kPelvis].p) - ankle);
   }
   const Quat keep = out[foot].q;
   solve_leg(body_, out, side, ankle, knee.norm() > 0.01 ? knee : Vec3(knee_turn * (truth[foot - 1].q * Vec3::UnitX())));

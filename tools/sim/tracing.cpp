@@ -14,6 +14,7 @@ constexpr double kShortestStretch = 0.8;
 struct Stance {
   double standoff = 0.3;   ///< pelvis from the touched line, m
   double face_turn = 0.0;  ///< heading minus the direction to the surface, rad
+  double lag = 0.0;        ///< pelvis behind a hand that goes to the left along the surface, m
   double to_left = 0.15;   ///< pelvis to its own left of the hand, m: the right hand is the pen
   double follow_s = 0.5;   ///< smoothing of the body's way
 };
@@ -38,8 +39,9 @@ Gesture accompany(Composer& composer, const std::vector<ContourSample>& samples,
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec2 n = outward[i].normalized();
     const double heading = heading_of(-n) + stance.face_turn;
-    const Vec2 wanted = hand[i] + n * stance.standoff + left_of(direction(heading)) * stance.to_left;
-    gesture.ground.push_back(composer.planner().pushed_clear(wanted, kBodyClear));
+    const Vec2 aside = left_of(direction(heading)) * stance.to_left - left_of(-n) * stance.lag;
+    gesture.ground.push_back(
+        composer.planner().pushed_clear(hand[i] + n * stance.standoff + aside, hand[i] + n * 0.35, kBodyClear));
     gesture.heading.push_back(heading);
   }
   smooth_samples(gesture.ground, 0.2 * rate);
@@ -76,7 +78,7 @@ std::vector<Stretch> free_stretches(const Building& building, const WallFace& wa
       low = std::min(low, u), high = std::max(high, u), near = std::min(near, off), far = std::max(far, off);
     }
     // What is flat on the wall stops the hand only, other things the body as well.
-    if (near < 0.70 && far > 0.0) {
+    if (near < 0.70 && far > 0.0 && high > 0.0 && low < wall.length()) {
       const double margin = far < 0.12 ? 0.05 : 0.33;
       blocked.push_back({low - margin, high + margin});
     }
@@ -85,7 +87,7 @@ std::vector<Stretch> free_stretches(const Building& building, const WallFace& wa
   std::vector<Stretch> free;
   double at = 0.0;
   for (const auto& b : blocked) {
-    if (b.from - at >= kShortestStretch && b.from <= wall.length()) free.push_back({at, b.from});
+    if (b.from - at >= kShortestStretch) free.push_back({at, b.from});
     at = std::max(at, b.to);
   }
   if (wall.length() - at >= kShortestStretch) free.push_back({at, wall.length()});
@@ -125,7 +127,7 @@ bool trace_stretch(Composer& composer, const WallFace& wall, double from, double
   Random& random = composer.random();
   // Going a → b the wall is at the right; facing the wall one steps sideways, more slowly.
   const bool along = wall_at_right && to > from;
-  const double speed = composer.speed_factor() * (along ? random.uniform(0.40, 0.65) : random.uniform(0.22, 0.36));
+  const double speed = composer.speed_factor() * (along ? random.uniform(0.45, 0.70) : random.uniform(0.26, 0.38));
   const auto samples = wall_samples(composer, wall, from, to, speed);
   Stance stance;
   stance.follow_s = 0.35;
@@ -133,6 +135,7 @@ bool trace_stretch(Composer& composer, const WallFace& wall, double from, double
     stance.standoff = random.uniform(0.42, 0.52);
     stance.face_turn = kPi / 2 - random.uniform(0.1, 0.5);
     stance.to_left = 0.0;
+    stance.lag = random.uniform(0.1, 0.25);  // the hand goes before the body
   } else {
     stance.standoff = random.uniform(0.42, 0.50);
     stance.face_turn = random.uniform(-0.15, 0.35);
@@ -140,14 +143,12 @@ bool trace_stretch(Composer& composer, const WallFace& wall, double from, double
   }
   Gesture gesture = accompany(composer, samples, stance);
   const Vec3 n = lift(wall.inward(), 0), d = lift(wall.along(), 0) * (to > from ? 1.0 : -1.0);
-  if (along) {
-    const double lag = random.uniform(0.1, 0.25);  // the hand goes before the body
-    for (auto& g : gesture.ground) g = composer.planner().pushed_clear(g - d.head<2>() * lag, kBodyClear);
-  }
   const Vec3 up = Vec3::UnitZ();
   const Vec3 fingers =
       composer.wearer().palm ? Vec3(up * 0.8 + d * 0.6) : Vec3(-n * 0.75 + up * 0.5 + d * (along ? 0.4 : 0.1));
-  for (const auto& s : samples) gesture.touch.push_back({s.p, fingers.normalized(), -n});
+  // Finger tips touch a wall at the right with the palm down, a wall in front with the palm to it.
+  const Vec3 palm = composer.wearer().palm || !along ? Vec3(-n) : Vec3(-up * 0.8 + d * 0.3 - n * 0.3);
+  for (const auto& s : samples) gesture.touch.push_back({s.p, fingers.normalized(), palm});
   return perform(composer, gesture, wall.id);
 }
 
@@ -163,9 +164,10 @@ bool can_walk_along(const Composer& composer, const std::array<Vec2, 4>& corners
   const Vec2 n = outward_of(corners, k);
   for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Vec2 p = corners[k] + (corners[(k + 1) % 4] - corners[k]) * u + n * 0.32;
-    const bool end = u == 0.0 || u == 1.0;
-    const Vec2 q = composer.planner().pushed_clear(p, 0.28);
-    if (composer.planner().clearance(q) < 0.25 || (q - p).norm() > (end ? 0.34 : 0.05)) return false;
+    const Vec2 q = composer.planner().pushed_clear(p, p, 0.28);
+    // Beside a wall one stands a little further along the edge, but never far from it.
+    if (composer.planner().clearance(q) < 0.25 || (q - p).norm() > (u == 0.5 ? 0.05 : 0.34)) return false;
+    if (std::abs((q - p).dot(n)) > 0.12) return false;
   }
   return true;
 }
@@ -309,7 +311,8 @@ bool trace_screen(Composer& composer, const Screen& screen) {
   const Contour contour = screen_contour(random, screen);
   const auto samples = run_along(contour, habit_of(composer, screen.big ? 1.2 : 0.8), composer.score().rate_hz, random);
   Stance stance;
-  stance.standoff = random.uniform(0.38, 0.46);
+  stance.standoff =
+      random.uniform(0.36, 0.44) * composer.wearer().body.stature / 1.75 - (composer.wearer().palm ? 0.06 : 0.0);
   stance.face_turn = random.uniform(-0.15, 0.25);
   stance.to_left = random.uniform(0.10, 0.18);
   stance.follow_s = 0.6;
@@ -319,9 +322,8 @@ bool trace_screen(Composer& composer, const Screen& screen) {
     const Vec2 out = direction(screen.heading), left = left_of(direction(gesture.heading.front()));
     const double edge = table.top.half.y() - (screen.centre.head<2>() - table.top.centre).dot(out);
     const Vec2 spot = screen.centre.head<2>() + out * (edge + random.uniform(0.21, 0.25)) + left * stance.to_left;
-    const double shift = composer.planner().clearance(spot) < 0.2 ? 0.0 : 1.0;
     std::fill(gesture.ground.begin(), gesture.ground.end(),
-              shift > 0 ? spot : composer.planner().pushed_clear(spot, 0.2));
+              composer.planner().pushed_clear(spot, spot + out * 0.1, 0.2));
   }
   const Vec3 n = contour.surface, up = Vec3::UnitZ();
   const Vec3 fingers = composer.wearer().palm ? Vec3(up) : Vec3(-n * 0.8 + up * 0.4);

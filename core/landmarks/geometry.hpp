@@ -40,6 +40,11 @@ std::optional<LineFit> fit_line(std::span<const Eigen::Vector2d> points);
 /// input gives equal output.
 std::optional<LineFit> fit_line_robust(std::span<const Eigen::Vector2d> points, double tolerance_m);
 
+/// Indices [begin, end).
+struct IndexRange {
+  std::size_t begin = 0, end = 0;
+};
+
 /// Angle swept by the direction from `centre` to the points, in order, rad: ±2π for one closed contour round it.
 double winding(std::span<const Eigen::Vector2d> points, const Eigen::Vector2d& centre);
 

@@ -114,10 +114,10 @@ double side_error(const RectangleFit& fit, const Eigen::Vector2d& local, Edge e)
 }
 
 /// Each contact to the drawn side nearest to it among those parallel to its travel; none in rounded corners.
-void assign_sides(Points points, const std::vector<Eigen::Vector2d>& travel, RectangleFit& fit) {
+void assign_sides(Points points, IndexRange kept, const std::vector<Eigen::Vector2d>& travel, RectangleFit& fit) {
   fit.labels.assign(points.size(), {});
   const auto turn = rotation(-fit.heading);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = kept.begin; i < kept.end; ++i) {
     const Eigen::Vector2d d = turn * travel[i], local = to_local(fit, points[i]);
     double nearest = 0.25;
     for (const Edge e : kEdges) {
@@ -129,18 +129,65 @@ void assign_sides(Points points, const std::vector<Eigen::Vector2d>& travel, Rec
   }
 }
 
-/// The ends of an open contour lie in corners: their contact is also on the side that was not drawn.
-void assign_end_corners(Points points, RectangleFit& fit) {
-  for (const Edge e : kEdges) {
-    if (fit.drawn[slot(e)]) continue;
-    for (const bool front : {true, false}) {
+/// A side that was followed over less than this part of its length, at one end of the trace only, is the reach to the
+/// corner or from it.
+constexpr double kMinCoverage = 0.5;
+
+/// First and last point of `side` along it, as a part of its length.
+double coverage(Points points, const RectangleFit& fit, Edge side) {
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (fit.labels[i].edge != side) continue;
+    const Eigen::Vector2d local = to_local(fit, points[i]);
+    const double along = is_u(side) ? local.y() : local.x();
+    lo = std::min(lo, along), hi = std::max(hi, along);
+  }
+  return hi > lo ? (hi - lo) / fit.size[is_u(side) ? 1 : 0] : 0.0;
+}
+
+/// The part of `kept` that remains when short ends on a side of their own are cut off; such sides count as not drawn.
+/// The hand comes to a corner and leaves it along any way, often along a side; if it really drew the beginning of that
+/// side, only this little is lost.
+IndexRange without_stubs(Points points, IndexRange kept, RectangleFit& fit) {
+  for (const Edge side : kEdges) {
+    if (!fit.drawn[slot(side)] || std::count(fit.drawn.begin(), fit.drawn.end(), true) <= 2) continue;
+    if (coverage(points, fit, side) >= kMinCoverage) continue;
+    std::size_t first = points.size(), last = 0, front = kept.end, back = kept.begin;
+    for (std::size_t i = kept.begin; i < kept.end; ++i) {
+      const Edge edge = fit.labels[i].edge;
+      if (edge == side)
+        first = std::min(first, i), last = i;
+      else if (edge != Edge::None)
+        front = std::min(front, i), back = i;
+    }
+    if (first > last) continue;
+    if (last < front)
+      kept.begin = last + 1;
+    else if (first > back)
+      kept.end = first;
+    else
+      continue;  // in the middle of the trace it was really followed
+    fit.drawn[slot(side)] = false;
+  }
+  return kept;
+}
+
+/// The ends of an open contour lie in corners: the outermost contact there is also on the side that was not drawn.
+void assign_end_corners(Points points, IndexRange kept, RectangleFit& fit) {
+  constexpr double kOnSide = 0.06;  // m
+  for (const Edge missing : kEdges) {
+    if (fit.drawn[slot(missing)]) continue;
+    for (const Edge side : kEdges) {
+      if (is_u(side) == is_u(missing) || !fit.drawn[slot(side)]) continue;
       std::optional<std::size_t> end;
-      for (std::size_t k = 0; k < points.size() && !end; ++k) {
-        const std::size_t i = front ? k : points.size() - 1 - k;
-        if (fit.labels[i].edge != Edge::None) end = i;
+      double outermost = -HUGE_VAL;
+      for (std::size_t i = kept.begin; i < kept.end; ++i) {
+        const Eigen::Vector2d local = to_local(fit, points[i]);
+        if (std::abs(side_error(fit, local, side)) > kOnSide) continue;
+        const double out = (is_plus(missing) ? 1.0 : -1.0) * (is_u(missing) ? local.x() : local.y());
+        if (out > outermost) outermost = out, end = i;
       }
-      if (!end || is_u(fit.labels[*end].edge) == is_u(e)) continue;
-      fit.labels[*end].corner = e;
+      if (end) fit.labels[*end] = {side, missing};
     }
   }
 }
@@ -216,12 +263,15 @@ std::optional<RectangleFit> fit_rectangle(Points points, const LandmarkConfig& c
                Eigen::Vector2d(0.5 * (bounds->at[0] + bounds->at[1]), 0.5 * (bounds->at[2] + bounds->at[3]));
   fit.size = {bounds->at[1] - bounds->at[0], bounds->at[3] - bounds->at[2]};
   fit.drawn = bounds->drawn;
-  fit.closed = std::all_of(fit.drawn.begin(), fit.drawn.end(), [](bool d) { return d; });
+  IndexRange kept{0, points.size()};
   for (int round = 0; round < 8; ++round) {
-    assign_sides(points, travel, fit);
-    assign_end_corners(points, fit);
+    assign_sides(points, kept, travel, fit);
+    const IndexRange shorter = without_stubs(points, kept, fit);
+    if (shorter.begin != kept.begin || shorter.end != kept.end) assign_sides(points, kept = shorter, travel, fit);
+    assign_end_corners(points, kept, fit);
     if (!refine(points, fit, !fixed_heading)) return std::nullopt;
   }
+  fit.closed = std::all_of(fit.drawn.begin(), fit.drawn.end(), [](bool d) { return d; });
   for (const double side : fit.size)
     if (side < config.rectangle_min_side_m || side > config.rectangle_max_side_m) return std::nullopt;
   measure_residual(points, fit);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/landmarks/config.hpp"
+#include "core/landmarks/geometry.hpp"
 
 namespace kinemap {
 
@@ -29,9 +30,6 @@ struct Surface {
 
 /// Indices [begin, end) that remain when the reach to the surface and back is cut off: at either end, a stretch of at
 /// most `reach_max_s` in which the hand moves clearly faster than it usually does, up to where it comes to rest.
-struct IndexRange {
-  std::size_t begin = 0, end = 0;
-};
 IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfig& config);
 
 /// The level or upright surface on which most of the trace lies, with its contacts; nullopt when neither holds half of

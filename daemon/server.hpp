@@ -23,7 +23,7 @@ class Server {
  public:
   /// Binds at once; port 0 lets the kernel choose (`port()` tells). `suit` and `suit_port` are for the status page.
   static Started<Server> open(const Config::Api& config, Sources sources, const Config::Suit& suit,
-                              std::uint16_t suit_port);
+                              std::uint16_t suit_port, const ServerLimits& limits = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -115,10 +115,10 @@ ArmGoal Composer::hip_goal() {
 double Composer::begin_gesture() {
   // The left hand may leave a moment before one stands still.
   const double raise = random_.uniform(0.45, 0.75), begin = now() - random_.uniform(0.0, 0.35);
-  const double on_hip = begin + raise, contact = std::max(on_hip, now()) + random_.uniform(0.2, 0.8);
-  const double reach = random_.uniform(0.5, 0.9);
+  const double on_hip = std::max(begin, score_.left.last_end()) + raise, reach = random_.uniform(0.5, 0.9);
+  const double contact = std::max({on_hip + random_.uniform(0.2, 0.8), now() + 0.2, score_.right.last_end() + reach});
   score_.left.to(begin, on_hip, hip_goal());
-  score_.right.to(contact - reach, contact, postures::touching());
+  score_.right.to(contact - reach, contact, postures::touching(score_.touches.size()));
   stand(contact - now());
   return contact;
 }

@@ -25,7 +25,8 @@ class Composer {
   bool walk_to(const Vec2& goal, std::optional<double> heading);
   /// Appends a given motion of the body over the floor; headings are unwrapped here.
   void follow(const std::vector<Vec2>& ground, const std::vector<double>& heading);
-  /// Begins a gesture: left hand to the hip, then the right one to the first touch. Returns the time of contact.
+  /// Begins a gesture: left hand to the hip, then the right one to the first point of the touch that is added next.
+  /// Returns the time of contact.
   double begin_gesture();
   /// Ends it at now: the right hand leaves, then the left one.
   void end_gesture();

@@ -21,27 +21,26 @@ std::vector<double> spread_max(const std::vector<double>& values, std::size_t ha
   return out;
 }
 
+/// From a to b; when they are nearly opposite, where the shortest turn is ambiguous, by way of `middle`.
+Quat between(const Quat& a, const Quat& middle, const Quat& b, double w) {
+  const double detour = smooth_step((a.angularDistance(b) - 1.7) / 0.8);
+  const Quat direct = a.slerp(w, b);
+  return detour > 0.0 ? direct.slerp(detour, a.slerp(w, middle).slerp(w, middle.slerp(w, b))) : direct;
+}
+
 }  // namespace
 
 Performer::Performer(const Score& score, const Gait& gait, const Wearer& wearer, Random& random)
-    : score_(score), gait_(gait), wearer_(wearer), trunk_(score.frames()), touch_(score.frames(), nullptr) {
-  // Between two touches the hand comes from the one before and goes to the one after: hold the nearer.
-  for (std::size_t k = 0; k < score.touches.size(); ++k) {
-    const TouchRun& run = score.touches[k];
-    const std::size_t end = run.first + run.points.size();
-    const std::size_t from =
-        k == 0 ? 0 : (score.touches[k - 1].first + score.touches[k - 1].points.size() + run.first) / 2;
-    const std::size_t to = k + 1 == score.touches.size() ? frames() : (end + score.touches[k + 1].first) / 2;
-    for (std::size_t i = from; i < std::min(to, frames()); ++i) {
-      touch_[i] = &run.points[std::clamp(i, run.first, end - 1) - run.first];
-    }
-  }
+    : score_(score), gait_(gait), wearer_(wearer), trunk_(score.frames()) {
   plan_sway(random);
   plan_reach();
   plan_height();
 }
 
-const TouchPoint* Performer::touch_at(std::size_t frame) const { return touch_[frame]; }
+const TouchPoint& Performer::touch_at(const ArmGoal& goal, std::size_t frame) const {
+  const TouchRun& run = score_.touches[goal.touch];
+  return run.points[std::clamp(frame, run.first, run.first + run.points.size() - 1) - run.first];
+}
 
 void Performer::plan_sway(Random& random) {
   std::vector<double> weight(frames());
@@ -80,11 +79,12 @@ void Performer::plan_reach() {
     trunk_[i].twist = score_.twist.at(t);
     lean[i] = 0.03 + score_.lean.at(t);
     const auto arm = score_.right.at(t);
-    if (arm.to->anchor != ArmGoal::Anchor::Touch || touch_at(i) == nullptr) continue;
-    const Vec3 d = touch_at(i)->p - lift(score_.ground[i], 0);
+    if (arm.to->anchor != ArmGoal::Anchor::Touch) continue;
+    const TouchPoint& touch = touch_at(*arm.to, i);
+    const Vec3 d = touch.p - lift(score_.ground[i], 0);
     const double bearing = wrapped(std::atan2(d.y(), d.x()) - score_.heading[i]);
     twist[i] = arm.weight * std::clamp(0.5 * (bearing + 0.35), -0.5, 0.5);
-    lean[i] = std::max(lean[i], arm.weight * needed_lean(i));
+    lean[i] = std::max(lean[i], arm.weight * needed_lean(touch, i));
   }
   smooth_samples(twist, 0.3 * score_.rate_hz);
   lean = spread_max(lean, static_cast<std::size_t>(0.3 * score_.rate_hz));
@@ -95,14 +95,14 @@ void Performer::plan_reach() {
   }
 }
 
-double Performer::needed_lean(std::size_t frame) const {
+double Performer::needed_lean(const TouchPoint& touch, std::size_t frame) const {
   const double reach = kArmReach * (wearer_.body.upper_arm(Side::Right) + wearer_.body.forearm(Side::Right));
   const auto missing = [&](double lean) {
     Pose23 pose;
     place_trunk(pose, frame, lean, trunk_[frame].twist);
     place_chain(wearer_.body, pose, kRightShoulder, kRightUpperArm);
     const Vec3 shoulder = pose[kRightUpperArm].p;
-    return (aim_for_touch(*touch_at(frame), shoulder).wrist - shoulder).norm() - reach;
+    return (aim_for_touch(touch, shoulder).wrist - shoulder).norm() - reach;
   };
   if (missing(0.03) <= 0.0) return 0.03;
   double low = 0.03, high = kMaxLean;
@@ -198,8 +198,10 @@ Performer::ArmAim Performer::aim(const Pose23& pose, Side side, const ArmGoal& g
       anchor = {Vec3::Zero(), Quat::Identity()};
       break;
     case ArmGoal::Anchor::Touch: {
-      ArmAim touch = aim_for_touch(*touch_at(frame), shoulder);
-      touch.elbow = upright * goal.elbow;
+      ArmAim touch = aim_for_touch(touch_at(goal, frame), shoulder);
+      // Elbow out and down; behind the body where that is just where the hand reaches.
+      const double same = (upright.conjugate() * (touch.wrist - shoulder)).normalized().dot(goal.elbow.normalized());
+      touch.elbow = upright * (goal.elbow + smooth_step((same - 0.3) / 0.5) * Vec3(-1.0, 0.6, 0.2));
       return touch;
     }
   }
@@ -227,16 +229,17 @@ void Performer::place_arm(Pose23& pose, Side side, std::size_t frame) const {
   const ArmAim from = aim(pose, side, *blend.from, frame);
   solve_arm(body, before, side, from.wrist, from.elbow, from.hand);
   const Quat chest = pose[kT8].q, chest_back = chest.conjugate();
-  const auto turn = [&](const Quat& a, const Quat& b) { return a.slerp(blend.weight, b); };
-  const Quat arm = turn(chest_back * before[upper].q, chest_back * pose[upper].q);
+  const double w = blend.weight, s = lateral(side);
+  // Elbow a little out and bent forward: a posture from which every other one is reached without a detour.
+  const Vec3 u(0.35, 0.45 * s, -0.8), f(1, 0, 0.2);
+  const Quat neutral = hand_orientation(side, u, s * u.cross(f));
+  const Quat arm = between(chest_back * before[upper].q, neutral, chest_back * pose[upper].q, w);
   const Quat elbow =
-      turn(before[upper].q.conjugate() * before[upper + 1].q, pose[upper].q.conjugate() * pose[upper + 1].q);
+      (before[upper].q.conjugate() * before[upper + 1].q).slerp(w, pose[upper].q.conjugate() * pose[upper + 1].q);
   const Quat hand_from = chest_back * before[upper + 2].q, hand_to = chest_back * pose[upper + 2].q;
   pose[upper].q = (chest * arm).normalized();
   pose[upper + 1].q = (pose[upper].q * elbow).normalized();
-  // By way of a straight wrist, so that even opposite postures have one way between them.
-  const Quat straight = chest_back * pose[upper + 1].q;
-  pose[upper + 2].q = (chest * turn(turn(hand_from, straight), turn(straight, hand_to))).normalized();
+  pose[upper + 2].q = (chest * between(hand_from, chest_back * pose[upper + 1].q, hand_to, w)).normalized();
   place_chain(body, pose, upper, upper + 2);
 }
 

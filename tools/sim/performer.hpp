@@ -36,14 +36,15 @@ class Performer {
     Quat hand;
   };
 
-  [[nodiscard]] const TouchPoint* touch_at(std::size_t frame) const;
+  /// The touch's point at the frame; before it the first, after it the last one.
+  [[nodiscard]] const TouchPoint& touch_at(const ArmGoal& goal, std::size_t frame) const;
   void place_trunk(Pose23& pose, std::size_t frame, double lean, double twist) const;
   [[nodiscard]] ArmAim aim_for_touch(const TouchPoint& touch, const Vec3& shoulder) const;
   [[nodiscard]] ArmAim aim(const Pose23& pose, Side side, const ArmGoal& goal, std::size_t frame) const;
   void place_arm(Pose23& pose, Side side, std::size_t frame) const;
   void place_leg(Pose23& pose, Side side, std::size_t frame) const;
   [[nodiscard]] Vec3 ankle(Side side, std::size_t frame) const;
-  [[nodiscard]] double needed_lean(std::size_t frame) const;
+  [[nodiscard]] double needed_lean(const TouchPoint& touch, std::size_t frame) const;
   void plan_sway(Random& random);
   void plan_reach();
   void plan_height();
@@ -52,7 +53,6 @@ class Performer {
   const Gait& gait_;
   const Wearer& wearer_;
   std::vector<Trunk> trunk_;
-  std::vector<const TouchPoint*> touch_;
 };
 
 }  // namespace kinemap::sim

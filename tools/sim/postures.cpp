@@ -64,10 +64,11 @@ ArmGoal on_thigh(const Wearer& w, Side s) {
   return goal(w, s, Anchor::Ground, {0.27, 0.16, 0.09}, {-0.7, 0.8, -0.3}, {1, -0.2, -0.15}, {0, 0, -1});
 }
 
-ArmGoal touching() {
+ArmGoal touching(std::size_t touch) {
   ArmGoal g;
   g.anchor = Anchor::Touch;
   g.elbow = {-0.15, -0.7, -0.7};
+  g.touch = touch;
   return g;
 }
 

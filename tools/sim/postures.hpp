@@ -15,7 +15,7 @@ ArmGoal crossed(const Wearer& wearer, Side side);
 ArmGoal in_the_air(const Wearer& wearer, Side side);
 ArmGoal scratching_head(const Wearer& wearer, Side side);
 ArmGoal on_thigh(const Wearer& wearer, Side side);
-ArmGoal touching();
+ArmGoal touching(std::size_t touch);
 /// Palm flat against a vertical surface at `p` whose normal is `n`.
 ArmGoal against(const Wearer& wearer, const Vec3& p, const Vec3& n);
 /// Finger tips at `p`, reaching down.

@@ -29,9 +29,10 @@ double Track::at(double time_s) const {
 }
 
 void ArmTrack::to(double begin_s, double end_s, const ArmGoal& goal) {
+  const double hurried = 0.8 * (end_s - begin_s);  // a late start is partly made up for
   if (!keys_.empty()) begin_s = std::max(begin_s, keys_.back().end_s);
   goals_.push_back(goal);
-  keys_.push_back({begin_s, std::max(end_s, begin_s + 0.25), goals_.size() - 1});
+  keys_.push_back({begin_s, std::max({end_s, begin_s + hurried, begin_s + 0.2}), goals_.size() - 1});
 }
 
 ArmTrack::Blend ArmTrack::at(double time_s) const {

@@ -41,6 +41,7 @@ struct ArmGoal {
   Vec3 fingers{0, 0, -1};  ///< direction of the fingers
   Vec3 palm{0, 0, -1};     ///< direction that the palm faces
   double swing = 0.0;      ///< 1: swings with the gait
+  std::size_t touch = 0;   ///< Anchor::Touch: which of the score's touches
 };
 
 /// A hand's goals over time.

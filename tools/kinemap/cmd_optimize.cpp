@@ -30,12 +30,6 @@ void warn(const Options& options, const G2oGraph& file) {
     fail("optimize", format("warning: %s: %zu lines %s left out", options.input.c_str(), count, tag.c_str()));
 }
 
-std::optional<Error> write_graph(const std::string& path, const G2oGraph& file) {
-  const std::string unfinished = path + ".new";
-  if (auto error = write_g2o(unfinished, file.graph, file.ids)) return error;
-  return replace_file(unfinished, path);
-}
-
 int optimize_file(const Options& options) {
   auto file = read_g2o(options.input);
   if (!file) return fail("optimize", file.error());
@@ -47,7 +41,8 @@ int optimize_file(const Options& options) {
   const graph::Verdict verdict = graph::optimize(file->graph, solver);
   const double after = g2o_cost(file->graph);
   if (!verdict.usable) return fail("optimize", options.input + ": no usable solution: " + verdict.message);
-  if (auto error = write_graph(options.out, *file)) return fail("optimize", error->message);
+  const auto write = [&](const std::string& temporary) { return write_g2o(temporary, file->graph, file->ids); };
+  if (auto error = write_file_with(options.out, write)) return fail("optimize", error->message);
 
   if (options.json)
     return print("optimize", pretty_text({{"poses", file->graph.poses.size()},

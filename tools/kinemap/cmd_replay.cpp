@@ -36,7 +36,11 @@ Result<std::uint64_t> replay_pcap(PcapReader& reader, PacedSender& sender) {
   std::uint64_t others = 0;
   while (going_on(sender)) {
     auto packet = reader.next();
-    if (!packet) return Error{packet.error()};
+    if (!packet && sender.sent() == 0) return Error{packet.error()};
+    if (!packet) {  // as in a build, what came before the damage counts
+      fail("replay", "warning: " + packet.error() + "; sent what came before");
+      break;
+    }
     if (!*packet) break;
     if (is_mxtp((*packet)->payload))
       sender.send((*packet)->time_s, (*packet)->payload);

@@ -28,6 +28,14 @@ bool write_all(int file, const std::string& contents) {
   return true;
 }
 
+/// Renames a finished temporary file over `path`; removes it when that fails.
+std::optional<Error> replace_file(const std::string& temporary, const std::string& path) {
+  if (::rename(temporary.c_str(), path.c_str()) == 0) return std::nullopt;
+  Error error = errno_error(path, "cannot be replaced");
+  ::unlink(temporary.c_str());
+  return error;
+}
+
 }  // namespace
 
 Result<std::string> read_file(const std::string& path) {
@@ -60,9 +68,11 @@ std::optional<Error> write_file(const std::string& path, const std::string& cont
   return error;
 }
 
-std::optional<Error> replace_file(const std::string& temporary, const std::string& path) {
-  if (::rename(temporary.c_str(), path.c_str()) == 0) return std::nullopt;
-  Error error = errno_error(path, "cannot be replaced");
+std::optional<Error> write_file_with(const std::string& path,
+                                     const std::function<std::optional<Error>(const std::string&)>& write) {
+  const std::string temporary = path + ".unfinished";
+  auto error = write(temporary);
+  if (!error) return replace_file(temporary, path);
   ::unlink(temporary.c_str());
   return error;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,8 +16,10 @@ Result<std::string> read_file(const std::string& path);
 /// over `path`.
 std::optional<Error> write_file(const std::string& path, const std::string& contents);
 
-/// Renames a finished temporary file over `path`; removes it when that fails.
-std::optional<Error> replace_file(const std::string& temporary, const std::string& path);
+/// The same for a writer that makes files by itself: `write` makes the temporary file that it is given, which then
+/// becomes `path`.
+std::optional<Error> write_file_with(const std::string& path,
+                                     const std::function<std::optional<Error>(const std::string& temporary)>& write);
 
 /// Makes the directory (and its parents) where it is missing, and checks that files can be made in it: before hours of
 /// work, not after.

@@ -5,7 +5,9 @@
 
 int main(int argc, char** argv) {
   using namespace kinemap::cli;
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error that each command reports
+  // A closed pipe and a file that may not grow are write errors, which each command reports.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
 
   CLI::App app{"Kinemap: a metric map of rooms and furniture from what a person in an Xsens MVN suit does."};
   app.name("kinemap");
@@ -20,7 +22,11 @@ int main(int argc, char** argv) {
       "\n'kinemap COMMAND --help' explains each command. Exit codes: 0 done, 1 bad input or failure, 2 wrong usage or "
       "configuration.");
   Run run;
-  for (const auto add : {add_sim, add_replay, add_build, add_map, add_status, add_watch, add_optimize, add_eval}) add(app, run);
+  for (const auto add : {add_sim, add_replay, add_build, add_map, add_status, add_watch, add_optimize, add_eval})
+    add(app, run);
+  const auto is_asked = [&](const CLI::App* command) { return command->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_asked).empty())
+    return fail(argv[1], "there is no such command; 'kinemap --help' lists them", kUsage);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -46,9 +46,8 @@ std::optional<Error> read_trajectory(const fs::path& directory, MapSnapshot& map
 
 std::optional<Error> write_map_files(const std::string& directory, const MapSnapshot& map, const graph::Graph& graph) {
   const fs::path base(directory);
-  const std::string unfinished = (base / ".graph.g2o.new").string();
-  if (auto error = write_g2o(unfinished, graph)) return error;
-  if (auto error = replace_file(unfinished, (base / "graph.g2o").string())) return error;
+  const auto write_graph = [&](const std::string& temporary) { return write_g2o(temporary, graph); };
+  if (auto error = write_file_with((base / "graph.g2o").string(), write_graph)) return error;
   const std::pair<const char*, std::string> files[] = {{"trajectory.tum", optimised_tum(map)},
                                                        {"odometry.tum", odometry_tum(map)},
                                                        {"scene.glb", glb_bytes(map)},

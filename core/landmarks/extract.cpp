@@ -65,9 +65,10 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
   const Eigen::Vector3d foot = surface.offset * surface.normal;
   const auto flat = in_plane(points, surface, foot, u, Eigen::Vector3d::UnitZ());
   const auto fit = fit_rectangle(flat, config, 0.0);
-  // Three sides and a contour that comes back most of the way round: a hand that waves along a wall does not.
+  // A contour that goes round and comes back to where it began: a hand that waves along a wall does not.
   if (!fit || std::count(fit->drawn.begin(), fit->drawn.end(), true) < 3 ||
-      std::abs(winding(flat, fit->centre)) < 1.4 * std::numbers::pi)
+      std::abs(winding(flat, fit->centre)) < 1.4 * std::numbers::pi ||
+      (flat.front() - flat.back()).norm() > 0.1 + 0.55 * std::max(fit->size[0], fit->size[1]))
     return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
   const double worst = 0.03 + 0.06 * std::min(fit->size[0], fit->size[1]);
   const auto labelled = std::count_if(fit->labels.begin(), fit->labels.end(),
@@ -120,7 +121,10 @@ void shift(Observation& observation, std::size_t by) {
 void extract_range(std::span<const TracePoint> points, IndexRange range, double floor_z, const LandmarkConfig& config,
                    int depth, Extraction& out) {
   const auto part = points.subspan(range.begin, range.end - range.begin);
-  if (part.size() < 8) return;
+  if (part.size() < 8) {
+    if (depth == 0) out.reason = "too few contacts";
+    return;
+  }
   // What is left beside an object is mostly the way to it; another object takes a while to draw.
   if (depth > 0 && part.back().time_s - part.front().time_s < kMinLeftover) return;
   const auto surface = find_surface(part, config);
@@ -145,10 +149,6 @@ void extract_range(std::span<const TracePoint> points, IndexRange range, double 
 
 Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config) {
   Extraction out;
-  if (points.size() < 8) {
-    out.reason = "too few contacts";
-    return out;
-  }
   extract_range(points, without_reach(points, config), floor_z, config, 0, out);
   if (!out.observations.empty()) out.reason.clear();
   return out;

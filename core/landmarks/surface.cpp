@@ -134,12 +134,14 @@ IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfi
       median({v.begin() + static_cast<std::ptrdiff_t>(n / 5), v.end() - static_cast<std::ptrdiff_t>(n / 5)});
   const double threshold = std::max(config.reach_speed_m_per_s, 2.0 * usual);
   const double first = points.front().time_s, last = points.back().time_s;
+  // In a short trace a fast stroke in the middle is not far from either end.
+  const double longest = std::min(config.reach_max_s, 0.3 * (last - first));
   const std::size_t front = reach_length(
       n, [&](std::size_t i) { return points[i].time_s - first; }, [&](std::size_t i) { return v[i]; }, threshold,
-      config.reach_max_s);
+      longest);
   const std::size_t back = reach_length(
       n, [&](std::size_t i) { return last - points[n - 1 - i].time_s; }, [&](std::size_t i) { return v[n - 1 - i]; },
-      threshold, config.reach_max_s);
+      threshold, longest);
   return {front, n - back};
 }
 

@@ -31,6 +31,8 @@ std::vector<std::size_t> visits_of(const MapState& state, std::size_t landmark) 
   return out;
 }
 
+std::array<std::size_t, 2> ordered(std::size_t a, std::size_t b) { return {std::min(a, b), std::max(a, b)}; }
+
 }  // namespace
 
 std::vector<graph::ParallelFactor> right_angles(const MapState& state, const MapperConfig::Walls& config) {
@@ -77,10 +79,7 @@ LoopCloser::Trial LoopCloser::attempt(const MapState& state, std::size_t newcome
   return trial;
 }
 
-bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
-  const auto marginals = graph::Marginals::compute(state.graph);
-  const auto found =
-      marginals ? candidates(state, newcomer, *marginals, config_.association) : std::vector<Candidate>{};
+bool LoopCloser::close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found) {
   std::optional<Trial> best;
   double second = HUGE_VAL;
   for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 2); ++k) {
@@ -94,26 +93,39 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
       second = trial.cost_increase;
     }
   }
-  const bool clear = best && second - best->cost_increase > config_.association.ambiguity;
-  const bool agrees = best && best->cost_increase <= config_.association.max_cost_increase;
+  if (!best) return false;
+  const bool clear = second - best->cost_increase > config_.association.ambiguity;
+  const bool agrees = best->cost_increase <= config_.association.max_cost_increase;
   if (clear && agrees) {
     state = std::move(best->state);
     ++state.summary.loop_closures;
+    contradicted_.clear();  // the drift is another now
     return true;
   }
-  if (best) {
-    if (!agrees) ++state.summary.loop_closures_revoked;
-    if (std::find(pending_.begin(), pending_.end(), newcomer) == pending_.end()) pending_.push_back(newcomer);
-  }
-  if (state.landmarks[newcomer].id == 0) state.landmarks[newcomer].id = next_id_++;
+  if (!agrees) ++state.summary.loop_closures_revoked;
+  for (const Candidate& candidate : found) contradicted_.push_back(ordered(newcomer, candidate.landmark));
+  return false;
+}
+
+bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
+  if (const auto marginals = graph::Marginals::compute(state.graph))
+    if (close(state, newcomer, candidates(state, newcomer, *marginals, config_.association))) return true;
+  state.landmarks[newcomer].id = next_id_++;
   return false;
 }
 
 bool LoopCloser::reconsider(MapState& state) {
   bool any = false;
-  for (const std::size_t landmark : std::exchange(pending_, {})) {
-    if (!state.graph.landmarks[landmark].active) continue;
-    any = resolve(state, landmark) || any;
+  auto marginals = graph::Marginals::compute(state.graph);
+  for (std::size_t k = state.graph.landmarks.size(); marginals && k-- > 0;) {
+    if (!state.graph.landmarks[k].active) continue;
+    auto found = candidates(state, k, *marginals, config_.association);
+    std::erase_if(found, [&](const Candidate& c) {
+      return std::find(contradicted_.begin(), contradicted_.end(), ordered(k, c.landmark)) != contradicted_.end();
+    });
+    if (found.empty() || !close(state, k, found)) continue;
+    any = true;
+    marginals = graph::Marginals::compute(state.graph);
   }
   return any;
 }

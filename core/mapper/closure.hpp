@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +23,7 @@ class LoopCloser {
   /// `newcomer` has just been added to `state`. True when a loop was closed; `state` is optimised then.
   bool resolve(MapState& state, std::size_t newcomer);
 
-  /// Looks once more at landmarks that were left separate although they might be another. True when some loop was
+  /// Looks once more at all landmarks: with the drift corrected, two that were left separate may be one. True when some loop was
   /// closed.
   bool reconsider(MapState& state);
 
@@ -36,8 +37,12 @@ class LoopCloser {
   };
   [[nodiscard]] Trial attempt(const MapState& state, std::size_t newcomer, const Candidate& candidate) const;
 
+  /// Tries the newcomer's candidates, nearest first. True when one was accepted; `state` is optimised then.
+  bool close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found);
+
   MapperConfig config_;
-  std::vector<std::size_t> pending_;  ///< landmarks that had candidates and were left separate
+  std::vector<std::array<std::size_t, 2>>
+      contradicted_;  ///< pairs that an optimum spoke against since the last closure
   std::uint32_t next_id_ = 1;
 };
 

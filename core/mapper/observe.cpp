@@ -75,6 +75,11 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
   append_landmark(observation.landmark, begin_s, end_s, floor_z, state);
   if (observation.landmark.kind == LandmarkKind::Screen)
     state.graph.landmark_priors.push_back({landmark, 6, 0.0, config.odometry.tilt_rad});
+  if (observation.landmark.kind !=
+      LandmarkKind::Wall)  // no side may be left undetermined, whatever the robust weights do
+    for (const int side : {4, 5})
+      state.graph.landmark_priors.push_back(
+          {landmark, side, observation.landmark.x[static_cast<std::size_t>(side)], 1.0});
 
   const auto kept = thinned(observation, points, config.hand.contact_spacing_m);
   const auto wider =

@@ -13,13 +13,15 @@
 namespace kinemap {
 namespace {
 
-constexpr double kMinAngle = 0.35;     // rad: flatter intersections are no corners
-constexpr double kShortening = 3.0;    // a wall that was touched beyond the corner speaks louder against it than a gap
-constexpr double kMinLength = 0.2;     // m
-constexpr double kSameHeading = 0.15;  // rad: stretches of one wall agree so well
-constexpr double kSamePlane = 0.25;    // m
-constexpr double kOffPlaneCost = 4.0;  // a metre off the plane speaks as loud as so many metres of gap
-constexpr double kJoinCost = 0.5;      // a true corner is preferred to a continuation
+constexpr double kMinAngle = 0.35;      // rad: flatter intersections are no corners
+constexpr double kShortening = 3.0;     // a wall that was touched beyond the corner speaks louder against it than a gap
+constexpr double kMaxShortening = 0.4;  // m: what drift and a hand on its way may make of it
+constexpr double kCrossingCost = 1.0;   // the wearer walked through the prolonged part: a doorway, or no wall
+constexpr double kMinLength = 0.2;      // m
+constexpr double kSameHeading = 0.15;   // rad: stretches of one wall agree so well
+constexpr double kSamePlane = 0.25;     // m
+constexpr double kOffPlaneCost = 4.0;   // a metre off the plane speaks as loud as so many metres of gap
+constexpr double kJoinCost = 0.5;       // a true corner is preferred to a continuation
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct Stretch {
@@ -46,8 +48,8 @@ Meeting corner(const Stretch& a, const Stretch& b, double join_max) {
   const Eigen::Vector2d s = m.inverse() * (b.frame.origin - a.frame.origin).head<2>();
   const double longer_a = s[0] - a.touched.hi, longer_b = b.touched.lo - s[1];
   const auto cost = [](double longer) { return longer >= 0.0 ? longer : -kShortening * longer; };
-  if (longer_a > join_max || longer_b > join_max || s[0] < a.touched.lo + kMinLength ||
-      s[1] > b.touched.hi - kMinLength)
+  if (std::max(longer_a, longer_b) > join_max || std::min(longer_a, longer_b) < -kMaxShortening ||
+      s[0] < a.touched.lo + kMinLength || s[1] > b.touched.hi - kMinLength)
     return {};
   return {s[0], s[1], cost(longer_a) + cost(longer_b), false};
 }
@@ -67,6 +69,22 @@ Meeting meeting(const Stretch& a, const Stretch& b, double join_max) {
   return at.cost < kNever ? at : continuation(a, b, join_max);
 }
 
+/// Does the way from p to q cross the way from r to s? (level)
+bool cross(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r, const Eigen::Vector3d& s) {
+  const auto side = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  };
+  return side(p, q, r) * side(p, q, s) < 0.0 && side(r, s, p) * side(r, s, q) < 0.0;
+}
+
+/// Did the wearer walk through the straight way from p to q?
+bool walked_through(const MapState& state, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  const auto& poses = state.graph.poses;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    if (cross(p, q, poses[i - 1].p, poses[i].p)) return true;
+  return false;
+}
+
 std::vector<Stretch> touched_stretches(const MapState& state) {
   std::vector<Stretch> out;
   for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
@@ -78,13 +96,21 @@ std::vector<Stretch> touched_stretches(const MapState& state) {
 }
 
 /// For each stretch the one that its head meets, least total cost.
-std::vector<std::optional<std::size_t>> join(const std::vector<Stretch>& stretches, double join_max) {
+std::vector<std::optional<std::size_t>> join(const MapState& state, const std::vector<Stretch>& stretches,
+                                             double join_max) {
+  const auto total_cost = [&](const Stretch& a, const Stretch& b) {
+    const Meeting at = meeting(a, b, join_max);
+    if (at.cost == kNever) return kNever;
+    const bool through = walked_through(state, a.frame.point(a.touched.hi), a.frame.point(at.head_s)) ||
+                         walked_through(state, b.frame.point(b.touched.lo), b.frame.point(at.tail_s));
+    return at.cost + (through ? kCrossingCost : 0.0);
+  };
   // One column for each tail, and one of its own for each head that meets nobody.
   const auto n = static_cast<Eigen::Index>(stretches.size());
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(n, 2 * n, kNever);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = 0; b < n; ++b)
-      if (a != b) cost(a, b) = meeting(stretches[a], stretches[b], join_max).cost;
+      if (a != b) cost(a, b) = total_cost(stretches[a], stretches[b]);
     cost(a, n + a) = 1.5 * join_max;
   }
   auto tails = assign(cost);
@@ -97,7 +123,7 @@ std::vector<std::optional<std::size_t>> join(const std::vector<Stretch>& stretch
 
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config) {
   const auto stretches = touched_stretches(state);
-  const auto next = join(stretches, config.join_max_m);
+  const auto next = join(state, stretches, config.join_max_m);
   const auto straight = [&](std::size_t k) {
     return next[k] && meeting(stretches[k], stretches[*next[k]], config.join_max_m).straight;
   };

@@ -172,10 +172,10 @@ double Building::clearance(const Vec2& p) const {
   return least;
 }
 
-Building make_building(const SimOptions& options, double highest_touch_m, Random& random) {
+Building make_building(const SimOptions& options, const Reach& reach, Random& random) {
   Building building;
   build_shells(building, options, random);
-  furnish(building, highest_touch_m, random);
+  furnish(building, reach, random);
   int id = 1;
   for (auto& wall : building.walls) wall.id = id++;
   for (auto& table : building.tables) table.id = id++;

@@ -98,11 +98,16 @@ struct Building {
   [[nodiscard]] double clearance(const Vec2& p) const;
 };
 
-/// Draws a building: shells joined by doorways, then furniture with room to walk around it. Nothing that is to be
-/// touched lies above `highest_touch_m`.
-Building make_building(const SimOptions& options, double highest_touch_m, Random& random);
+/// How far the wearer can touch: nothing that is to be touched lies beyond.
+struct Reach {
+  double highest_m = 1.85;     ///< over the floor
+  double over_table_m = 0.42;  ///< behind a table's edge
+};
+
+/// Draws a building: shells joined by doorways, then furniture with room to walk around it.
+Building make_building(const SimOptions& options, const Reach& reach, Random& random);
 
 /// Puts tables, screens and chairs into the rooms (part of make_building).
-void furnish(Building& building, double highest_touch_m, Random& random);
+void furnish(Building& building, const Reach& reach, Random& random);
 
 }  // namespace kinemap::sim

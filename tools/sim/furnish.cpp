@@ -19,8 +19,7 @@ struct WallSpot {
 
 class Furnisher {
  public:
-  Furnisher(Building& building, double highest_touch_m, Random& random)
-      : b_(building), highest_touch_m_(highest_touch_m), random_(random) {
+  Furnisher(Building& building, const Reach& reach, Random& random) : b_(building), reach_(reach), random_(random) {
     for (const auto& door : b_.doorways) keep_free_.push_back({door.centre, door.heading, {1.0, 0.75}});
   }
 
@@ -139,7 +138,7 @@ class Furnisher {
       const Vec2 front = spot->wall->a + spot->wall->along() * spot->u + spot->wall->inward() * offset;
       screen.heading = heading_of(spot->wall->inward());
       // The upper edge must be in reach.
-      const double top = std::min(random_.uniform(1.60, 1.85), highest_touch_m_);
+      const double top = std::min(random_.uniform(1.60, 1.85), reach_.highest_m);
       screen.centre = lift(front, top - screen.height / 2);
       const Vec2 in = spot->wall->inward();
       const Footprint body{front - in * (offset / 2), screen.heading, {offset / 2, screen.width / 2}};
@@ -177,8 +176,8 @@ class Furnisher {
     screen.height = random_.uniform(0.28, std::min(0.40, 0.72 * screen.width));
     const double side = random_.sign();
     const Vec2 along = direction(table.top.heading), out = left_of(along) * side;
-    const double depth =
-        std::min(random_.uniform(0.28, 0.42), 2 * table.top.half.y() - 0.15);  // behind the table's edge
+    const double depth = std::min(
+        {random_.uniform(0.28, 0.42), 2 * table.top.half.y() - 0.15, reach_.over_table_m});  // behind the table's edge
     const double room_along = table.top.half.x() - screen.width / 2 - 0.05;
     const Vec2 at =
         table.top.centre + out * (table.top.half.y() - depth) + along * random_.uniform(-room_along, room_along);
@@ -219,15 +218,13 @@ class Furnisher {
   }
 
   Building& b_;
-  double highest_touch_m_;
+  Reach reach_;
   Random& random_;
   std::vector<Footprint> keep_free_;
 };
 
 }  // namespace
 
-void furnish(Building& building, double highest_touch_m, Random& random) {
-  Furnisher(building, highest_touch_m, random).run();
-}
+void furnish(Building& building, const Reach& reach, Random& random) { Furnisher(building, reach, random).run(); }
 
 }  // namespace kinemap::sim

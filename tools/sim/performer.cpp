@@ -168,7 +168,7 @@ Performer::ArmAim Performer::aim_for_touch(const TouchPoint& touch, const Vec3& 
   // The farther the reach, the straighter wrist and arm.
   const double arm = wearer_.body.upper_arm(Side::Right) + wearer_.body.forearm(Side::Right);
   const double stretch = (touch.p - shoulder).norm() / (arm - wearer_.p_hand_touch.y());
-  const double own = (wearer_.palm ? 0.0 : 0.45) + (wearer_.palm ? 0.7 : 0.5) * smooth_step((stretch - 0.75) / 0.22);
+  const double own = (wearer_.palm ? 0.0 : 0.45) + (wearer_.palm ? 0.95 : 0.5) * smooth_step((stretch - 0.72) / 0.22);
   const Vec3 fingers = (1.0 - own) * touch.fingers + own * (touch.p - shoulder).normalized();
   const Quat hand = hand_orientation(Side::Right, fingers, touch.palm);
   return {touch.p - hand * wearer_.p_hand_touch, Vec3::Zero(), hand};

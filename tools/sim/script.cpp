@@ -100,7 +100,7 @@ class Tour {
   void go_round(int round, int rounds) {
     // In later rounds as much as time allows; in the first nearly everything.
     const double left_s = kLongest_s - composer_.now(), rounds_left = std::max(1, rounds - round);
-    const double share = round == 0 ? 1.0 : std::clamp(left_s / rounds_left / first_round_s_, 0.25, 0.95);
+    const double share = round == 0 ? 1.0 : std::clamp(left_s / rounds_left / first_round_s_, 0.35, 0.95);
     std::vector<int> rooms;
     for (std::size_t i = 0; i < building_.rooms.size(); ++i) rooms.push_back(static_cast<int>(i));
     if (round % 2 == 1) std::reverse(rooms.begin(), rooms.end());
@@ -108,7 +108,7 @@ class Tour {
       ccw_[static_cast<std::size_t>(room)] = random_.chance(0.7);
       for (const auto& stop : in_order(room)) {
         const bool wall = stop.kind == Stop::Kind::Wall;
-        const double wanted = round > 0 ? share : wall ? 1.0 : late(room) ? 0.6 : 0.97;
+        const double wanted = round > 0 ? share : late(room) ? (wall ? 0.85 : 0.6) : wall ? 1.0 : 0.97;
         if (composer_.now() > kLongest_s - 18.0 || !random_.chance(wanted)) continue;
         if (round == 0) close_loop(stop);
         maybe_distract();
@@ -154,7 +154,8 @@ class Tour {
     switch (stop.kind) {
       case Stop::Kind::Wall: {
         const bool at_right = ccw_[static_cast<std::size_t>(stop.room)] ? random_.chance(0.85) : random_.chance(0.4);
-        done = trace_wall(composer_, building_.walls[stop.index], at_right, brief);
+        const auto extent = brief ? WallExtent::Brief : late(stop.room) ? WallExtent::Longest : WallExtent::All;
+        done = trace_wall(composer_, building_.walls[stop.index], at_right, extent);
         break;
       }
       case Stop::Kind::Table:

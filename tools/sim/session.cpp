@@ -22,6 +22,11 @@ Wearer make_wearer(const SimOptions& options, const DriftColumn& column, Random&
   return w;
 }
 
+Reach reach_of(const Wearer& w) {
+  const double h = w.body.stature;
+  return {(w.palm ? 1.0 : 1.07) * h, 0.26 * h - (w.palm ? 0.09 : 0.0)};
+}
+
 }  // namespace
 
 std::optional<std::string> check(const SimOptions& o) {
@@ -64,7 +69,7 @@ Session::Session(const SimOptions& options)
       body_random_(options.seed, 4),
       suit_random_(options.seed, 5),
       wearer_(make_wearer(options, column_, wearer_random_)),
-      building_(make_building(options, (wearer_.palm ? 1.0 : 1.07) * wearer_.body.stature, building_random_)),
+      building_(make_building(options, reach_of(wearer_), building_random_)),
       script_(write_script(options, building_, wearer_, script_random_)),
       gait_(make_gait(script_.score, wearer_.body)) {
   performer_ = std::make_unique<Performer>(script_.score, gait_, wearer_, body_random_);

@@ -255,14 +255,14 @@ TracingHabit habit_of(Composer& composer, double factor) {
 
 }  // namespace
 
-bool trace_wall(Composer& composer, const WallFace& wall, bool wall_at_right, bool brief) {
+bool trace_wall(Composer& composer, const WallFace& wall, bool wall_at_right, WallExtent extent) {
   Random& random = composer.random();
   auto stretches = free_stretches(composer.building(), wall);
   if (stretches.empty()) return false;
   std::sort(stretches.begin(), stretches.end(),
             [](const Stretch& a, const Stretch& b) { return a.to - a.from > b.to - b.from; });
   std::vector<Stretch> chosen{stretches.front()};
-  for (std::size_t i = 1; i < stretches.size() && !brief; ++i) {
+  for (std::size_t i = 1; i < stretches.size() && extent == WallExtent::All; ++i) {
     if (stretches[i].to - stretches[i].from > 1.2 && random.chance(0.7)) chosen.push_back(stretches[i]);
   }
   const bool forward = wall_at_right || random.chance(0.5);
@@ -274,7 +274,7 @@ bool trace_wall(Composer& composer, const WallFace& wall, bool wall_at_right, bo
     const double most = std::min(0.5, 0.2 * (stretch.to - stretch.from));
     double from = stretch.from + random.uniform(0.1, std::max(0.12, most)),
            to = stretch.to - random.uniform(0.1, std::max(0.12, most));
-    if (brief && to - from > 1.6) {
+    if (extent == WallExtent::Brief && to - from > 1.6) {
       const double length = random.uniform(1.1, 1.6);
       from += random.uniform(0.0, to - from - length);
       to = from + length;

@@ -16,9 +16,10 @@ struct Options {
   bool json = false;
 };
 
-std::string value_text(const Json& value) {
+/// Counts are grouped; numbers that are names are not.
+std::string value_text(const std::string& key, const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_unsigned()) return grouped(value.get<std::uint64_t>());
+  if (value.is_number_unsigned() && key != "port" && key != "pid") return grouped(value.get<std::uint64_t>());
   if (value.is_number_float()) return format("%.6g", value.get<double>());
   return value.dump();
 }
@@ -34,7 +35,7 @@ void append(const Json& group, const std::string& indent, std::string& text) {
     if (!indent.empty() && is_zero(value))
       zeros += (zeros.empty() ? "" : ", ") + key;
     else
-      rows.push_back({indent + key, value_text(value)});
+      rows.push_back({indent + key, value_text(key, value)});
   }
   text += text_table(rows, {0, 1});
   if (!zeros.empty()) text += indent + "0: " + zeros + '\n';

@@ -68,8 +68,8 @@ std::string News::map_lines(const MapSnapshot& map) {
   for (const auto& [id, object] : known_)
     if (!now.contains(id)) text += format("  - %s %u\n", to_string(object.type), id);
   known_ = std::move(now);
-  return format("revision %llu at %.1f s: %zu objects\n", static_cast<unsigned long long>(map.revision), map.time_s,
-                map.objects.size()) +
+  return format("revision %llu at %.1f s: %zu object%s\n", static_cast<unsigned long long>(map.revision), map.time_s,
+                map.objects.size(), map.objects.size() == 1 ? "" : "s") +
          text;
 }
 

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// `kinemap` against a real kinemapd: a simulated wearer over UDP, then every command that asks the daemon.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/tools/run_command.hpp"
+
+namespace kinemap {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+int free_port(int type) {
+  const int probe = ::socket(AF_INET, type, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::bind(probe, reinterpret_cast<sockaddr*>(&address), sizeof address);
+  socklen_t length = sizeof address;
+  ::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &length);
+  ::close(probe);
+  return ntohs(address.sin_port);
+}
+
+bool within(std::chrono::seconds patience, const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return condition();
+}
+
+std::string slurp(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(LiveCli, StatusMapAndWatchFollowAWearer) {
+  const fs::path root = fs::temp_directory_path() / ("kinemap-live-test-" + std::to_string(::getpid()));
+  fs::create_directories(root);
+  const int suit = free_port(SOCK_DGRAM), port = free_port(SOCK_STREAM);
+  const std::string api = "127.0.0.1:" + std::to_string(port), config = (root / "config.json").string();
+  std::ofstream(config) << Json{{"suit", {{"address", "127.0.0.1"}, {"port", suit}}}, {"api", {{"port", port}}}};
+  const auto kinemap = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), KINEMAP_BIN);
+    return run_command(arguments);
+  };
+
+  Background daemon({KINEMAPD_BIN, "--config", config}, (root / "daemon.log").string());
+  ASSERT_TRUE(within(std::chrono::seconds(30), [&] {
+    return kinemap({"status", "--host", api}).code == 0;
+  })) << slurp((root / "daemon.log").string());
+  EXPECT_NE(kinemap({"map", "--host", api}).out.find("0 objects"), std::string::npos);
+
+  const std::string watched = (root / "watch.log").string();
+  Background watch({KINEMAP_BIN, "watch", "--host", api, "--json", "--topics", "map,events"}, watched);
+  ASSERT_TRUE(
+      within(std::chrono::seconds(30), [&] { return slurp(watched).find("\"topic\":\"map\"") != std::string::npos; }));
+
+  const Ran sim = kinemap({"sim", "--seed", "3", "--rooms", "1", "--rounds", "1", "--udp",
+                           "127.0.0.1:" + std::to_string(suit), "--speed", "25", "--json"});
+  ASSERT_EQ(sim.code, 0) << sim.err;
+  EXPECT_EQ(Json::parse(sim.out)["refused"], 0);
+  const auto objects = [&] { return Json::parse(kinemap({"map", "--host", api, "--json"}).out)["objects"].size(); };
+  EXPECT_TRUE(within(std::chrono::seconds(30), [&] { return objects() >= 4; }));
+
+  const Json status = Json::parse(kinemap({"status", "--host", api, "--json"}).out);
+  EXPECT_GT(status["tracker"]["frames"], 1000);
+  EXPECT_NE(kinemap({"status", "--host", api}).out.find("port       " + std::to_string(suit)), std::string::npos)
+      << "a port is no count";
+  const Ran map = kinemap({"map", "--host", api, "--svg", (root / "plan.svg").string()});
+  EXPECT_NE(map.out.find("chair"), std::string::npos) << map.out;
+  EXPECT_NE(slurp((root / "plan.svg").string()).find("class=\"path\""), std::string::npos)
+      << "the daemon's trajectory is drawn";
+  EXPECT_TRUE(within(std::chrono::seconds(30),
+                     [&] { return slurp(watched).find("\"event\":\"trace\"") != std::string::npos; }));
+  EXPECT_EQ(watch.stop(SIGINT), 0);
+
+  const Ran wrong = run_command({KINEMAP_BIN, "watch", "--once", "--host", "127.0.0.1:" + std::to_string(suit)});
+  EXPECT_EQ(wrong.code, 1) << "the suit's port is not the API's";
+  EXPECT_EQ(daemon.stop(SIGTERM), 0);
+  fs::remove_all(root);
+}
+
+}  // namespace
+}  // namespace kinemap

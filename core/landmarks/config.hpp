@@ -5,7 +5,7 @@ namespace kinemap {
 
 /// What makes a trace an object. Angles in radians, lengths in metres, times in seconds.
 struct LandmarkConfig {
-  double plane_tolerance_m = 0.05;       ///< contacts farther from the surface are lead-in, lead-out or lift-off
+  double plane_tolerance_m = 0.07;       ///< contacts farther from the surface are lead-in, lead-out or lift-off
   double plane_tolerance_per_m = 0.012;  ///< more of it for each metre of extent: the odometry bends long traces
   double reach_speed_m_per_s =
       0.5;                   ///< a hand faster than this (and twice its usual speed) at either end is still on its way

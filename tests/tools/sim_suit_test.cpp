@@ -58,11 +58,13 @@ TEST(SimSuit, StartsWhereTheWearerIs) {
   }
 }
 
-/// Median over seeds of the gap between the reported and the true pelvis when the first round ends, in the room of the
-/// table.
+/// Median over seeds of the gap between the reported and the true pelvis when the first round ends, in the 3.9 × 8.7 m
+/// room. A round here is a working one: walls, tables, screens and chairs on the way, some 50–70 m walked in three to
+/// four minutes. A bare lap along the four walls (23 m, one minute) ends only about 0.3 m off with the same figures:
+/// too short for the heading to go wrong.
 double median_gap(Severity drift) {
   std::vector<double> gaps;
-  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     SimOptions options = seeded(seed);
     options.drift = drift;
     options.rooms = 1;
@@ -78,7 +80,7 @@ double median_gap(Severity drift) {
   return gaps[gaps.size() / 2];
 }
 
-TEST(SimSuit, ARoundEndsAsFarOffAsTheTableSays) {
+TEST(SimSuit, AWorkingRoundEndsAsFarOffAsTheTableSays) {
   const double usual = median_gap(Severity::Default);
   EXPECT_GT(usual, 0.7);
   EXPECT_LT(usual, 1.5);

@@ -88,11 +88,13 @@ class Furnisher {
   bool add_table(int room) {
     Table table;
     table.room = room;
+    const bool free_standing = random_.chance(0.55);
     for (int i = 0; i < kTries; ++i) {
       table.top.half = Vec2(random_.uniform(1.0, i < kTries / 2 ? 2.0 : 1.3), random_.uniform(0.6, 1.0)) / 2;
       if (table.top.half.y() > 0.7 * table.top.half.x()) table.top.half.y() = 0.7 * table.top.half.x();
       table.top.half.y() = std::max(table.top.half.y(), 0.3);
-      if (!(random_.chance(0.45) ? place_at_wall(table) : place_freely(table))) continue;
+      const bool freely = free_standing == (i < kTries / 2);  // the other way when there is no room
+      if (!(freely ? place_freely(table) : place_at_wall(table))) continue;
       if (!keeps_free(table.top) || gap_to_furniture(table.top) < kWalkway) continue;
       table.height = random_.uniform(0.70, 0.78);
       b_.tables.push_back(table);
@@ -137,8 +139,9 @@ class Furnisher {
       const double offset = stand ? random_.uniform(0.35, 0.6) : random_.uniform(0.04, 0.09);
       const Vec2 front = spot->wall->a + spot->wall->along() * spot->u + spot->wall->inward() * offset;
       screen.heading = heading_of(spot->wall->inward());
-      // The upper edge must be in reach.
+      // Both edges must be in reach, without a ladder and without kneeling.
       const double top = std::min(random_.uniform(1.60, 1.85), reach_.highest_m);
+      screen.height = std::min(screen.height, top - 0.66);
       screen.centre = lift(front, top - screen.height / 2);
       const Vec2 in = spot->wall->inward();
       const Footprint body{front - in * (offset / 2), screen.heading, {offset / 2, screen.width / 2}};

@@ -64,12 +64,14 @@ class Tour {
 
   /// Stands still for the suit to settle, somewhere with room around.
   void begin() {
+    // Near a wall, as one comes in: a round begins and ends on its rim.
     Vec2 best = building_.rooms[0].middle();
-    double most = -1.0;
-    for (int i = 0; i < 60; ++i) {
-      const Vec2 p = building_.rooms[0].middle() + Vec2(random_.uniform(-1.5, 1.5), random_.uniform(-1.5, 1.5));
+    for (int i = 0; i < 200; ++i) {
+      const Vec2 p = building_.rooms[0].middle() + Vec2(random_.uniform(-4.5, 4.5), random_.uniform(-4.5, 4.5));
       const double c = building_.clearance(p);
-      if (c > most) most = c, best = p;
+      if (!building_.rooms[0].contains(p) || c < 0.5 || c > 0.8) continue;
+      best = p;
+      break;
     }
     home_ = best;
     composer_.follow_from(best, random_.integer(0, 3) * kPi / 2 + random_.normal(0.1));
@@ -109,7 +111,9 @@ class Tour {
       for (const auto& stop : in_order(room)) {
         const bool wall = stop.kind == Stop::Kind::Wall;
         const double wanted = round > 0 ? share : late(room) ? (wall ? 0.85 : 0.6) : wall ? 1.0 : 0.97;
-        if (composer_.now() > kLongest_s - 18.0 || !random_.chance(wanted)) continue;
+        if (round == 0 && composer_.now() > 0.82 * kLongest_s) continue;  // time for a second round must be left
+        const bool first_seat = stop.kind == Stop::Kind::Chair && !sat_;
+        if (composer_.now() > kLongest_s - 18.0 || (!random_.chance(wanted) && !first_seat)) continue;
         if (round == 0) close_loop(stop);
         maybe_distract();
         visit(stop, false);
@@ -181,6 +185,7 @@ class Tour {
   std::vector<bool> ccw_;
   std::set<int> touched_, visited_;
   Vec2 home_{0, 0};
+  bool sat_ = false;
   int latest_ = 0;
   double last_closure_ = 0.0, next_closure_ = 15.0;
   double next_distractor_s_ = 0.0, first_round_s_ = 0.0;

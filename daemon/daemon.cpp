@@ -18,7 +18,8 @@ constexpr std::array<std::string_view, 4> kReloadable{"log.level", "api.pose_rat
 
 SuitSink Daemon::suit_sink() {
   return {[this](const SuitFrame& frame) { return pipeline_.offer(frame); },
-          [this](const WearerInfo& wearer) { return pipeline_.offer(wearer); }};
+          [this](const WearerInfo& wearer) { return pipeline_.offer(wearer); },
+          [this] { return pipeline_.offer_silence(); }};
 }
 
 Sources Daemon::sources() {

@@ -6,6 +6,13 @@
 #include <utility>
 
 namespace kinemap {
+namespace {
+
+/// Longer than the gaps after which the tracker ends a trace or a sitting, so that telling it changes nothing that
+/// frames could still.
+constexpr double kSilenceS = 3.0;
+
+}  // namespace
 
 Intake::Intake(const AssemblerConfig& config, SuitSink sink) : sink_(std::move(sink)), assembler_(config) {}
 
@@ -20,9 +27,16 @@ void Intake::take(std::span<const std::byte> datagram, const std::string& sender
     any = true;
     sink_.on_frame(frame);
   });
-  if (any) counts_.last_frame_s = arrival_s;
+  if (any) {
+    counts_.last_frame_s = arrival_s;
+    streaming_ = true;
+  }
   update_wearer();
   update_news(any ? sender : news_.sender);
+}
+
+void Intake::check_silence() {
+  if (streaming_ && now_s() - counts_.last_frame_s > kSilenceS && sink_.on_silence()) streaming_ = false;
 }
 
 void Intake::update_wearer() {

@@ -19,6 +19,8 @@ class Intake {
 
   /// One datagram that just arrived.
   void take(std::span<const std::byte> datagram, const std::string& sender);
+  /// To be called now and then: tells the sink when the stream has fallen silent.
+  void check_silence();
   /// Counts of the sockets, to be changed by the taking thread and then shown with `publish`.
   ReceiverCounts& counts() { return counts_; }
   /// Shows the counts to the other threads; once per batch of datagrams is enough.
@@ -35,6 +37,7 @@ class Intake {
   SuitSink sink_;
   Assembler assembler_;
   ReceiverCounts counts_;
+  bool streaming_ = false;            // frames have come since the sink was told of silence
   ReceiverNews news_;                 // the taking thread's own copy
   std::uint64_t wearer_offered_ = 0;  // revision that the sink has taken
   std::uint64_t wearer_shown_ = 0;    // revision in news_

@@ -41,15 +41,17 @@ Pipeline::~Pipeline() {
 }
 
 bool Pipeline::offer(const SuitFrame& frame) {
-  SuitMessage message{frame, nullptr};
+  SuitMessage message{frame, nullptr, false};
   message.frame.discontinuity |= discontinuity_lost_;
   const bool taken = frames_.push(message);
   discontinuity_lost_ = !taken && message.frame.discontinuity;
   return taken;
 }
 bool Pipeline::offer(const WearerInfo& wearer) {
-  return frames_.push({{}, std::make_shared<const WearerInfo>(wearer)});
+  return frames_.push({{}, std::make_shared<const WearerInfo>(wearer), false});
 }
+
+bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
   return {tracker_stats_.get(), solver_stats_.get(), frames_.stats(),
@@ -67,6 +69,8 @@ void Pipeline::detect(const std::stop_token& stop) {
       frames_.wait(ticket);
     } else if (message->wearer) {
       send(*message->wearer, stop);
+    } else if (message->silence) {
+      take_silence(events, stop);
     } else {
       take_frame(message->frame, events, stop);
     }
@@ -79,6 +83,14 @@ void Pipeline::take_frame(const SuitFrame& frame, std::vector<Event>& events, co
   tracker_.step(frame, events);
   tracker_stats_.set(tracker_.stats());
   for (Event& event : events) send(std::move(event), stop);
+}
+
+void Pipeline::take_silence(std::vector<Event>& events, const std::stop_token& stop) {
+  events.clear();
+  tracker_.finish(events);
+  tracker_stats_.set(tracker_.stats());
+  for (Event& event : events) send(std::move(event), stop);
+  send(Silence{}, stop);
 }
 
 void Pipeline::send(MapperMessage message, const std::stop_token& stop) {
@@ -116,6 +128,11 @@ void Pipeline::solve(const std::stop_token& stop) {
 void Pipeline::take_message(const MapperMessage& message) {
   if (const auto* wearer = std::get_if<WearerInfo>(&message)) {
     mapper_.set_wearer(*wearer);
+    return;
+  }
+  if (std::holds_alternative<Silence>(message)) {
+    mapper_.finish();
+    map_.set(mapper_.snapshot());
     return;
   }
   const Event& event = std::get<Event>(message);

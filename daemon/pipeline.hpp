@@ -79,6 +79,10 @@ class Pipeline {
   bool offer(const SuitFrame& frame);
   bool offer(const WearerInfo& wearer);
 
+  /// The suit has fallen silent: what is open is closed and the map optimised to the end, as at the end of a recording.
+  /// Frames may follow all the same.
+  bool offer_silence();
+
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
   [[nodiscard]] LivePose live_pose() const { return live_pose_.get(); }
@@ -91,12 +95,15 @@ class Pipeline {
   struct SuitMessage {
     SuitFrame frame;
     std::shared_ptr<const WearerInfo> wearer;  ///< when set: news of the wearer, and no frame
+    bool silence = false;                      ///< when set: the suit has fallen silent, and no frame
   };
-  using MapperMessage = std::variant<Event, WearerInfo>;
+  struct Silence {};
+  using MapperMessage = std::variant<Event, WearerInfo, Silence>;
 
   void detect(const std::stop_token& stop);
   void solve(const std::stop_token& stop);
   void take_frame(const SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
+  void take_silence(std::vector<Event>& events, const std::stop_token& stop);
   void send(MapperMessage message, const std::stop_token& stop);
   void take_message(const MapperMessage& message);
   void notify(const Event& event);

@@ -3,6 +3,7 @@
 
 #include <pthread.h>
 
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -46,6 +47,7 @@ class Receiver::Impl {
   }
 
   void run() {
+    watch_silence();
     thread_ = std::jthread([this] { io_.run(); });
     pthread_setname_np(thread_.native_handle(), "suit");
   }
@@ -54,7 +56,17 @@ class Receiver::Impl {
   [[nodiscard]] ReceiverState state() const { return intake_.state(); }
 
  private:
+  void watch_silence() {
+    silence_.expires_after(std::chrono::milliseconds(500));
+    silence_.async_wait([this](ErrorCode error) {
+      if (error) return;
+      intake_.check_silence();
+      watch_silence();
+    });
+  }
+
   net::io_context io_{1};
+  net::steady_timer silence_{io_};  // the thread only
   Intake intake_;                   // the thread takes, everyone may ask for its state
   std::unique_ptr<UdpSource> udp_;  // the thread only
   std::unique_ptr<TcpSource> tcp_;  // the thread only

@@ -14,11 +14,12 @@
 
 namespace kinemap {
 
-/// Where the receiver puts what it got; both are called on its thread, must not wait, and return false when there is no
-/// room. A frame is lost then; wearer information is offered again with the next datagram.
+/// Where the receiver puts what it got; all are called on its thread, must not wait, and return false when there is no
+/// room. A frame is lost then; the others are offered again soon.
 struct SuitSink {
   std::function<bool(const SuitFrame&)> on_frame;
   std::function<bool(const WearerInfo&)> on_wearer;
+  std::function<bool()> on_silence;  ///< no frame has come for 3 s; once, until the next frame
 };
 
 /// Plain numbers, copied as one value between threads.

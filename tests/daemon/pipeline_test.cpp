@@ -132,6 +132,21 @@ TEST(Pipeline, FramesBecomeEventsAndALivePose) {
   EXPECT_EQ(pipeline.stats().frames.refused, 0U);
 }
 
+TEST(Pipeline, SilenceSettlesTheMapAndFramesMayFollow) {
+  const auto frames = glider_frames(300);
+  Pipeline pipeline{TrackerConfig{}, MapperConfig{}};
+  for (int i = 0; i < 200; ++i) pipeline.offer(frames[i]);
+  ASSERT_TRUE(pipeline.offer_silence());
+  ASSERT_TRUE(eventually([&] { return !pipeline.map()->trajectory.empty(); }));
+  const auto first = pipeline.map();
+  EXPECT_EQ(first->trajectory.size(), pipeline.stats().tracker.key_poses);
+  EXPECT_NEAR(first->trajectory.back().time_s, frames[199].time_s, 1e-9);
+  for (int i = 200; i < 300; ++i) pipeline.offer(frames[i]);
+  ASSERT_TRUE(pipeline.offer_silence());
+  ASSERT_TRUE(eventually([&] { return pipeline.map()->revision > first->revision; }));
+  EXPECT_NEAR(pipeline.map()->trajectory.back().time_s, frames[299].time_s, 1e-9);
+}
+
 TEST(Pipeline, FramesBeyondTheRingAreCountedNotWaitedFor) {
   const auto frames = glider_frames(300);
   // One place in each ring: whatever the threads manage to take, all is accounted for.

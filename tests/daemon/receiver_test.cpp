@@ -28,6 +28,7 @@ std::vector<std::byte> bytes_of(std::string_view text) {
 struct Collector {
   std::atomic<int> frames{0};
   std::atomic<int> wearers{0};
+  std::atomic<int> silences{0};
   std::atomic<int> refuse_wearers{0};  ///< so many offers are refused at first
   std::mutex mutex;
   std::string name;
@@ -40,7 +41,8 @@ struct Collector {
               name = wearer.name;
               ++wearers;
               return true;
-            }};
+            },
+            [this] { return ++silences, true; }};
   }
 };
 
@@ -111,6 +113,18 @@ TEST(Receiver, WearerInformationIsOfferedUntilItIsTaken) {
   const std::lock_guard lock(collector.mutex);
   EXPECT_EQ(collector.name, "Ada");
   EXPECT_TRUE(eventually([&] { return receiver->state().news->wearer.name == "Ada"; }));
+}
+
+TEST(Receiver, SilenceIsSaidOnceAndAgainAfterTheNextFrames) {
+  Collector collector;
+  const auto receiver = open(collector, "udp");
+  test::UdpSender sender(receiver->port());
+  for (std::uint32_t i = 0; i < 100; ++i) sender.send(glider_datagram(i));
+  EXPECT_TRUE(eventually([&] { return collector.silences == 1; }));
+  EXPECT_EQ(collector.frames, 100);
+  for (std::uint32_t i = 500; i < 600; ++i) sender.send(glider_datagram(i));
+  EXPECT_TRUE(eventually([&] { return collector.silences == 2; }));
+  EXPECT_EQ(collector.frames, 200);
 }
 
 TEST(Receiver, UdpOverIpv6) {

@@ -88,7 +88,14 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
 Attempt wall(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
   const Eigen::Vector3d along(-surface.normal.y(), surface.normal.x(), 0.0);
   const double apart = std::abs(along.dot(points[surface.members.back()].p - points[surface.members.front()].p));
-  if (apart < config.wall_min_extent_m)
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (const std::size_t i : surface.members) {
+    lo = std::min(lo, along.dot(points[i].p));
+    hi = std::max(hi, along.dot(points[i].p));
+  }
+  // First and last contact far apart (paper, section IV): a hand that waves to and fro in the air does not get
+  // anywhere.
+  if (apart < config.wall_min_extent_m || apart < 0.4 * (hi - lo))
     return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Wall;

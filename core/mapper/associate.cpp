@@ -126,6 +126,24 @@ Eigen::MatrixXd jacobian(const Difference& d, const Landmark& a, const Landmark&
   return j;
 }
 
+/// Level distance between the two, m, and how far it may be.
+double shift(const Eigen::VectorXd& e, LandmarkKind kind) {
+  return kind == LandmarkKind::Wall ? std::abs(e[0]) : e.head<2>().norm();
+}
+double max_shift(LandmarkKind kind, const MapperConfig::Association& config) {
+  switch (kind) {
+    case LandmarkKind::Wall:
+      return config.wall_max_shift_m;
+    case LandmarkKind::Table:
+      return config.table_max_shift_m;
+    case LandmarkKind::Screen:
+      return config.screen_max_shift_m;
+    case LandmarkKind::Seat:
+      return config.seat_max_shift_m;
+  }
+  return 0.0;
+}
+
 std::optional<KeyPoseId> last_visit(const MapState& state, std::size_t landmark) {
   for (std::size_t k = state.observations.size(); k-- > 0;)
     if (state.observations[k].landmark == landmark) return state.observations[k].key_pose;
@@ -209,7 +227,7 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     const Difference d = difference(state, newcomer, other, config);
     const Eigen::VectorXd e = d.of(a, b);
     const int heading = a.kind == LandmarkKind::Wall ? 1 : 3;
-    if (std::abs(e[heading]) > kMaxTurn) continue;
+    if (std::abs(e[heading]) > kMaxTurn || shift(e, a.kind) > max_shift(a.kind, config)) continue;
     const std::array<graph::Variable, 2> pair{graph::Variable{graph::Variable::Kind::Landmark, newcomer},
                                               graph::Variable{graph::Variable::Kind::Landmark, other}};
     const Eigen::MatrixXd j = jacobian(d, a, b);

@@ -23,8 +23,8 @@ class LoopCloser {
   /// `newcomer` has just been added to `state`. True when a loop was closed; `state` is optimised then.
   bool resolve(MapState& state, std::size_t newcomer);
 
-  /// Looks once more at all landmarks: with the drift corrected, two that were left separate may be one. True when some loop was
-  /// closed.
+  /// Looks once more at all landmarks: with the drift corrected, two that were left separate may be one. True when some
+  /// loop was closed.
   bool reconsider(MapState& state);
 
   /// Optimises with at most `iterations`. The right angles between walls are renewed first.

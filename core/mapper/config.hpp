@@ -50,6 +50,13 @@ struct MapperConfig {
     double heading_sigma_rad = 0.06;
     double size_sigma_m = 0.06;
     double size_sigma_per_m = 0.05;
+    /// A newcomer farther from a landmark than this is not taken for it, however wide the covariance: another object of
+    /// the kind is as likely there. When other closures have taken the drift out, it is looked at again. Tables and
+    /// screens have sizes to tell them by.
+    double wall_max_shift_m = 1.0;
+    double seat_max_shift_m = 0.6;
+    double table_max_shift_m = 1.5;
+    double screen_max_shift_m = 1.0;
     double max_cost_increase = 30.0;  ///< a closure that costs more (2 × robust cost) than this is taken back
     double ambiguity = 6.0;           ///< two candidates whose costs differ by less wait for more evidence
   } association;

@@ -135,7 +135,10 @@ TEST(Mapper, SameEventsSameMapToTheLastBit) {
 TEST(Mapper, ATraceOnNothingIsKeptAsUnresolved) {
   Wearer wearer;
   wearer.walk_to(1.0, 0.0);
-  wearer.trace({{1.0, 0.6, 1.0}, {1.3, 0.9, 1.6}, {0.6, 0.3, 0.8}, {1.5, 0.7, 1.9}, {0.8, 1.0, 0.7}}, {1.0, -1.0});
+  std::vector<Eigen::Vector3d> coil;  // through the air: neither level nor upright anywhere for long
+  for (int i = 0; i < 60; ++i)
+    coil.emplace_back(1.0 + 0.3 * std::cos(0.5 * i), 0.6 + 0.3 * std::sin(0.5 * i), 1.2 + 0.3 * std::sin(0.35 * i));
+  wearer.trace(coil, {1.0, -1.0});
   const auto map = map_of(wearer);
   EXPECT_TRUE(map->objects.empty());
   ASSERT_EQ(map->unresolved.size(), 1u);

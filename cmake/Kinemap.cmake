@@ -15,6 +15,9 @@ if(KINEMAP_SANITIZE)
   if(KINEMAP_SANITIZE MATCHES undefined)
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
+  if(KINEMAP_SANITIZE MATCHES thread)
+    add_compile_options(-Wno-tsan) # Asio's fences beside its mutexes; the sanitizer sees the mutexes
+  endif()
 endif()
 
 # Bits must not depend on the build machine: no -march=native, no -ffast-math.

@@ -179,6 +179,10 @@ void fields(V& v, MapperConfig::Association& c) {
   v.number("heading_sigma_rad", c.heading_sigma_rad, Range{"rad", 0.0001, 3.1416});
   v.number("size_sigma_m", c.size_sigma_m, Range{"m", 0.0001, 10});
   v.number("size_sigma_per_m", c.size_sigma_per_m, Range{"m/m", 0, 10});
+  v.number("wall_max_shift_m", c.wall_max_shift_m, Range{"m", 0, 100});
+  v.number("seat_max_shift_m", c.seat_max_shift_m, Range{"m", 0, 100});
+  v.number("table_max_shift_m", c.table_max_shift_m, Range{"m", 0, 100});
+  v.number("screen_max_shift_m", c.screen_max_shift_m, Range{"m", 0, 100});
   v.number("max_cost_increase", c.max_cost_increase, Range{"1", 0, 1000000});
   v.number("ambiguity", c.ambiguity, Range{"1", 0, 1000000});
 }

@@ -26,11 +26,12 @@ import xml.etree.ElementTree as ElementTree
 passed = failed = skipped = 0
 for case in ElementTree.parse(sys.argv[1]).getroot().iter("testcase"):
     output = case.findtext("system-out") or ""
-    # A GoogleTest program counts as its cases; anything else as one test.
+    # A GoogleTest program counts as its cases; anything else, and a program that could not be run or died, as one test.
     cases = re.search(r"^\[=+\] (\d+) tests? from .* ran\.", output, re.MULTILINE)
     if not cases:
-        ok = case.get("status") == "run"
-        passed, failed, skipped = passed + ok, failed + (case.get("status") == "fail"), skipped + (case.get("status") == "notrun")
+        passed += case.get("status") == "run"
+        skipped += case.get("status") == "disabled"
+        failed += case.get("status") in ("fail", "notrun")
         continue
     bad = re.search(r"^ *(\d+) FAILED TESTS?$", output, re.MULTILINE)
     left_out = re.search(r"^\[  SKIPPED \] (\d+) tests?, listed below:", output, re.MULTILINE)

@@ -21,7 +21,7 @@ constexpr double kOnPlane = 0.25;    // m: contacts farther from their wall do n
 constexpr double kMaxTurn = 0.8;     // rad: objects are not mistaken for ones that stand crosswise
 constexpr double kOverlap = 0.3;     // part of the shorter of two stretches that two visits to one wall share
 constexpr double kAlongSigma = 0.1;  // m: what two visits differ by along the wall beyond the drift between them
-constexpr double kAlongGate = 4.0;   // squared sigmas; stretches that only the drift might bring together stay two
+constexpr double kMaxMissing = 0.4;  // m of that overlap that drift may have taken; stretches farther apart stay two
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
@@ -163,8 +163,10 @@ double variance_along(const MapState& state, const graph::Marginals& marginals, 
   return (h * joint * h.transpose())(0, 0);
 }
 
-/// Walls that continue each other are told apart by where along them they were touched.
-double along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a, std::size_t b) {
+/// Walls that continue each other are told apart by where along them they were touched: squared sigmas, nullopt when
+/// too far apart.
+std::optional<double> along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a,
+                                          std::size_t b) {
   const auto ia = contact_interval(state, a), ib = contact_interval(state, b);
   const auto visit_a = last_visit(state, a), visit_b = last_visit(state, b);
   if (!ia || !ib || !visit_a || !visit_b) return 0.0;
@@ -173,6 +175,7 @@ double along_wall_distance(const MapState& state, const graph::Marginals& margin
   const double shared = std::min(std::max(s0, s1), ib->hi) - std::max(std::min(s0, s1), ib->lo);
   const double missing = kOverlap * std::min(std::abs(s1 - s0), ib->hi - ib->lo) - shared;
   if (missing <= 0.0) return 0.0;
+  if (missing > kMaxMissing) return std::nullopt;
   return squared(missing) / (squared(kAlongSigma) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
 }
 
@@ -236,9 +239,9 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     double distance = e.dot(s.ldlt().solve(e));
     int dimensions = static_cast<int>(e.size());
     if (a.kind == LandmarkKind::Wall) {
-      const double along = along_wall_distance(state, marginals, newcomer, other);
-      if (along > kAlongGate) continue;
-      distance += along, ++dimensions;
+      const auto along = along_wall_distance(state, marginals, newcomer, other);
+      if (!along) continue;
+      distance += *along, ++dimensions;
     }
     if (distance <= gate(config.gate_sigma, dimensions)) out.push_back({other, d.quarter_turns, distance, dimensions});
   }

@@ -14,6 +14,7 @@
 #include "protocol/mvnx_parser.hpp"
 #include "protocol/wearer.hpp"
 #include "protocol/wire/file.hpp"
+#include "protocol/wire/segment_names.hpp"
 
 namespace kinemap {
 
@@ -22,30 +23,6 @@ namespace {
 constexpr std::size_t kChunk = 64 * 1024;
 constexpr double kFarthestM = 1e5;
 constexpr double kUnitTolerance = 0.01;
-
-constexpr std::array<std::string_view, kSegmentCount> kLabels{"Pelvis",
-                                                              "L5",
-                                                              "L3",
-                                                              "T12",
-                                                              "T8",
-                                                              "Neck",
-                                                              "Head",
-                                                              "RightShoulder",
-                                                              "RightUpperArm",
-                                                              "RightForeArm",
-                                                              "RightHand",
-                                                              "LeftShoulder",
-                                                              "LeftUpperArm",
-                                                              "LeftForeArm",
-                                                              "LeftHand",
-                                                              "RightUpperLeg",
-                                                              "RightLowerLeg",
-                                                              "RightFoot",
-                                                              "RightToe",
-                                                              "LeftUpperLeg",
-                                                              "LeftLowerLeg",
-                                                              "LeftFoot",
-                                                              "LeftToe"};
 
 bool same_label(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
@@ -91,8 +68,8 @@ class MvnxPlayer {
     }
     for (std::size_t i = 0; i < kSegmentCount; ++i) {
       const std::string& label = subject.segments[i].label;
-      if (!same_label(label, kLabels[i])) {
-        return "segment " + std::to_string(i + 1) + " is \"" + label + "\"; " + std::string(kLabels[i]) +
+      if (!same_label(label, kSegmentNames[i])) {
+        return "segment " + std::to_string(i + 1) + " is \"" + label + "\"; " + std::string(kSegmentNames[i]) +
                " is expected";
       }
     }
@@ -231,7 +208,7 @@ class MvnxPlayer {
     wearer_told_ = true;
     mxtp::Scale scale;
     for (std::size_t i = 0; i < subject_.segments.size() && i < kSegmentCount; ++i) {
-      mxtp::ScaleSegment segment{std::string(kLabels[i]), {}};
+      mxtp::ScaleSegment segment{std::string(kSegmentNames[i]), {}};
       if (!t_pose_.empty()) {
         for (std::size_t k = 0; k < 3; ++k) segment.origin[k] = static_cast<float>(t_pose_[3 * i + k]);
         scale.segments.push_back(segment);

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "protocol/wire/segment_names.hpp"
 #include "tests/protocol/assembler_bench.hpp"
 
 namespace kinemap {
@@ -592,33 +593,10 @@ TEST(Assembler, WalkingThroughTheOriginADownstairsIsNotPinned) {
 
 mxtp::Scale scale_with_points() {
   mxtp::Scale scale;
-  const char* const names[] = {"Pelvis",
-                               "L5",
-                               "L3",
-                               "T12",
-                               "T8",
-                               "Neck",
-                               "Head",
-                               "RightShoulder",
-                               "RightUpperArm",
-                               "RightForeArm",
-                               "RightHand",
-                               "LeftShoulder",
-                               "LeftUpperArm",
-                               "LeftForeArm",
-                               "LeftHand",
-                               "RightUpperLeg",
-                               "RightLowerLeg",
-                               "RightFoot",
-                               "RightToe",
-                               "LeftUpperLeg",
-                               "LeftLowerLeg",
-                               "LeftFoot",
-                               "LeftToe"};
   for (std::size_t i = 0; i < kSegmentCount; ++i) {
     const auto& p = t_pose()[i];
     scale.segments.push_back(
-        {names[i], {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())}});
+        {kSegmentNames[i], {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())}});
   }
   for (std::uint16_t i = 0; i < 60; ++i) scale.points.push_back({1, i, "pSomething" + std::to_string(i), 0, {0, 0, 0}});
   scale.points.push_back({7, 1, "pTopOfHead", 0, {0, 0, 0.17F}});

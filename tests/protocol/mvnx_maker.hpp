@@ -5,33 +5,10 @@
 #include <sstream>
 #include <string>
 
+#include "protocol/wire/segment_names.hpp"
 #include "tests/protocol/body_stream.hpp"
 
 namespace kinemap::testing_support {
-
-inline constexpr std::array<const char*, kSegmentCount> kMvnxLabels{"Pelvis",
-                                                                    "L5",
-                                                                    "L3",
-                                                                    "T12",
-                                                                    "T8",
-                                                                    "Neck",
-                                                                    "Head",
-                                                                    "RightShoulder",
-                                                                    "RightUpperArm",
-                                                                    "RightForeArm",
-                                                                    "RightHand",
-                                                                    "LeftShoulder",
-                                                                    "LeftUpperArm",
-                                                                    "LeftForeArm",
-                                                                    "LeftHand",
-                                                                    "RightUpperLeg",
-                                                                    "RightLowerLeg",
-                                                                    "RightFoot",
-                                                                    "RightToe",
-                                                                    "LeftUpperLeg",
-                                                                    "LeftLowerLeg",
-                                                                    "LeftFoot",
-                                                                    "LeftToe"};
 
 /// How MVN's files of a version look: in version 3 the arms' segment frames are aligned with the world when the arms
 /// hang.
@@ -71,7 +48,7 @@ inline std::string mvnx_head(const MvnxStyle& style) {
       << "\">\n<comment>a note &amp; more</comment>\n"
       << "<subject label=\"Anna\" frameRate=\"120\" segmentCount=\"23\">\n<segments>\n";
   for (std::size_t i = 0; i < kSegmentCount; ++i) {
-    out << "<segment label=\"" << kMvnxLabels[i] << "\" id=\"" << i + 1 << "\"><points>\n";
+    out << "<segment label=\"" << kSegmentNames[i] << "\" id=\"" << i + 1 << "\"><points>\n";
     const char* tag = style.version == 3 ? "pos_s" : "pos_b";
     const auto point = [&](const char* label, const char* position) {
       out << "<point label=\"" << label << "\"><" << tag << '>' << position << "</" << tag << "></point>\n";

@@ -100,7 +100,7 @@ TEST_F(Recording, MvnxWriterIsReadBack) {
   subject.frame_rate_hz = 240.0;
   for (std::size_t i = 0; i < kSegmentCount; ++i) {
     const auto& p = t_pose()[i];
-    subject.segments.push_back({kMvnxLabels[i], {p.x(), p.y(), p.z()}, {}});
+    subject.segments.push_back({kSegmentNames[i], {p.x(), p.y(), p.z()}, {}});
   }
   subject.segments[10].points.push_back({"pRightTopOfHand", {0, -0.19, 0.01}});
   auto writer = MvnxWriter::create(file_.path(), subject);

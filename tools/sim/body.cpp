@@ -1,33 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sim/body.hpp"
 
+#include "protocol/wire/segment_names.hpp"
+
 namespace kinemap::sim {
 
 namespace {
-
-constexpr std::array<const char*, kBones> kNames{"Pelvis",
-                                                 "L5",
-                                                 "L3",
-                                                 "T12",
-                                                 "T8",
-                                                 "Neck",
-                                                 "Head",
-                                                 "RightShoulder",
-                                                 "RightUpperArm",
-                                                 "RightForeArm",
-                                                 "RightHand",
-                                                 "LeftShoulder",
-                                                 "LeftUpperArm",
-                                                 "LeftForeArm",
-                                                 "LeftHand",
-                                                 "RightUpperLeg",
-                                                 "RightLowerLeg",
-                                                 "RightFoot",
-                                                 "RightToe",
-                                                 "LeftUpperLeg",
-                                                 "LeftLowerLeg",
-                                                 "LeftFoot",
-                                                 "LeftToe"};
 
 void set_sides(Body& body, Bone right, Bone left, const Vec3& right_offset) {
   body.offset[right] = right_offset;
@@ -61,7 +39,7 @@ void vary(Body& body, double common_sigma, double own_sigma, Random& random) {
 
 }  // namespace
 
-const char* bone_name(std::size_t bone) { return kNames[bone]; }
+const char* bone_name(std::size_t bone) { return kSegmentNames[bone]; }
 
 Body make_body(double stature_m, Random& random) {
   Body body;

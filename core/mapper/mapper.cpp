@@ -22,7 +22,9 @@ class Mapper::Impl {
   bool add(const KeyPose& key_pose) {
     odometry_.add(key_pose, state_.graph);
     time_s_ = key_pose.time_s;
-    return false;
+    if (odometry_.key_poses().size() < snapshot_->trajectory.size() + kTrajectoryLag) return false;
+    publish(std::make_shared<MapSnapshot>(*snapshot_));  // the objects are as they were
+    return true;
   }
 
   bool add(const Trace& trace) {
@@ -56,21 +58,30 @@ class Mapper::Impl {
 
  private:
   static constexpr std::size_t kTouch = 0;
+  static constexpr std::size_t kTrajectoryLag =
+      10;  ///< key poses after which a walk is published without news of objects
 
   void associate(std::size_t newcomer) {
     if (closer_.resolve(state_, newcomer)) closer_.reconsider(state_);
   }
 
+  /// Publishes the objects as the graph has them now.
   void publish() {
     auto map = std::make_shared<MapSnapshot>();
-    map->revision = snapshot_->revision + 1;
-    map->time_s = time_s_;
     const auto walls = cut_walls(state_, config_.walls);
     const auto marginals = graph::Marginals::compute(state_.graph);
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->unresolved = unresolved_;
+    publish(std::move(map));
+  }
+
+  /// Publishes `map` with the trajectory up to now.
+  void publish(std::shared_ptr<MapSnapshot> map) {
+    map->revision = snapshot_->revision + 1;
+    map->time_s = time_s_;
     const auto& key_poses = odometry_.key_poses();
+    map->trajectory.clear();
     map->trajectory.reserve(key_poses.size());
     for (const auto& key_pose : key_poses)
       map->trajectory.push_back(

@@ -24,7 +24,8 @@ class Mapper {
   /// What is known of the wearer's hand; applies to traces that follow (and to those before, at the next optimisation).
   void set_wearer(const WearerInfo& wearer);
 
-  /// Takes one event. Optimises when it closes a loop. True when a new snapshot was published.
+  /// Takes one event. Optimises when it closes a loop. True when a new snapshot was published: after each trace and
+  /// sitting, and every few key poses, so that the trajectory keeps up with a wearer who only walks.
   bool add(const Event& event);
 
   /// No more events: optimises to convergence and publishes a last snapshot.

@@ -145,6 +145,19 @@ TEST(Mapper, ATraceOnNothingIsKeptAsUnresolved) {
   EXPECT_FALSE(map->unresolved[0].reason.empty());
 }
 
+TEST(Mapper, TheTrajectoryKeepsUpWithAWalk) {
+  Wearer wearer;
+  wearer.walk_to(10.0, 0.0);
+  Mapper mapper(config());
+  for (const auto& event : wearer.events) mapper.add(event);
+  EXPECT_GT(mapper.snapshot()->trajectory.size() + 11, wearer.truth.size());
+  const auto revision = mapper.snapshot()->revision;
+  mapper.finish();
+  mapper.finish();  // silence may come more than once
+  EXPECT_EQ(mapper.snapshot()->trajectory.size(), wearer.truth.size());
+  EXPECT_GT(mapper.snapshot()->revision, revision);
+}
+
 TEST(Mapper, NothingInNothingOut) {
   Mapper mapper(config());
   mapper.finish();

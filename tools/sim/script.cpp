@@ -39,7 +39,7 @@ class Tour {
       ends.push_back(composer_.now());
     }
     composer_.stand(2.0);
-    return {std::move(composer_.score()), visited_, ends};
+    return {std::move(composer_.score()), touched_, ends};
   }
 
  private:
@@ -117,7 +117,6 @@ class Tour {
         if (round == 0) close_loop(stop);
         maybe_distract();
         visit(stop, false);
-        if (round == 0) visited_.insert(touched_.begin(), touched_.end());
       }
     }
     if (round == 0) first_round_s_ = std::max(30.0, composer_.now());
@@ -183,7 +182,7 @@ class Tour {
   Composer composer_;
   std::vector<Stop> stops_;
   std::vector<bool> ccw_;
-  std::set<int> touched_, visited_;
+  std::set<int> touched_;
   Vec2 home_{0, 0};
   bool sat_ = false;
   int latest_ = 0;

@@ -13,7 +13,7 @@ namespace kinemap::sim {
 /// What the wearer did, and which objects were touched or sat on (ids).
 struct Script {
   Score score;
-  std::set<int> visited;             ///< in the first round
+  std::set<int> visited;             ///< in any round
   std::vector<double> round_ends_s;  ///< end of each round
 };
 

@@ -30,6 +30,7 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 std::string object_table(const MapSnapshot& map) {
+  if (map.objects.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
       {"id", "type", "size m", "x", "y", "z", "heading°", "±m", "seen", "for"}};
   bool assumed = false;

@@ -35,7 +35,7 @@ std::string describe(const MapSnapshot& map, const Plan& plan, const Options& op
     text += plan_text(plan, std::min(terminal_width(STDOUT_FILENO, 100), kMaxColumns), kMaxRows,
                       ::isatty(STDOUT_FILENO) != 0) +
             '\n';
-  text += object_table(map) + '\n';
+  if (!map.objects.empty()) text += object_table(map) + '\n';
   return text + object_counts(map) + '\n';
 }
 

@@ -149,6 +149,8 @@ template <class V>
 void fields(V& v, MapperConfig::Hand& c) {
   v.number("tip_m", c.tip_m, Range{"m", 0, 100});
   v.number("tip_per_stature", c.tip_per_stature, Range{"1", 0, 0.3});
+  v.number("tip_sigma_m", c.tip_sigma_m, Range{"m", 0, 1});
+  v.number("tip_sideways_sigma_m", c.tip_sideways_sigma_m, Range{"m", 0.0001, 1});
   v.number("contact_sigma_m", c.contact_sigma_m, Range{"m", 0.0001, 10});
   v.number("contact_correlation_s", c.contact_correlation_s, Range{"s", 0.001, 3600});
   v.number("contact_spacing_m", c.contact_spacing_m, Range{"m", 0.001, 100});

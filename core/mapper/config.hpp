@@ -22,12 +22,15 @@ struct MapperConfig {
   /// The right hand as a measuring tip.
   struct Hand {
     double tip_m = 0.0;  ///< wrist to touching point; 0: from the suit's body points, else from the wearer's stature
-    double tip_per_stature = 0.105;      ///< finger tip beyond the wrist as a part of the body height
-    double contact_sigma_m = 0.03;       ///< of one independent contact: arm chain, jitter, imperfect touch
-    double contact_correlation_s = 2.0;  ///< contacts within this time err together and count as one
-    double contact_spacing_m = 0.06;     ///< contacts are thinned to this distance before they become factors
-    double corner_sigma_m = 0.05;        ///< of the end of an open contour
-    double loss_scale = 2.0;             ///< Cauchy, in standard deviations
+    double tip_per_stature = 0.105;  ///< finger tip beyond the wrist as a part of the body height
+    double tip_sigma_m =
+        0.04;  ///< how far the touching point may lie along the hand from there; estimated, 0: taken as it is
+    double tip_sideways_sigma_m = 0.015;  ///< the same across the hand
+    double contact_sigma_m = 0.03;        ///< of one independent contact: arm chain, jitter, imperfect touch
+    double contact_correlation_s = 2.0;   ///< contacts within this time err together and count as one
+    double contact_spacing_m = 0.06;      ///< contacts are thinned to this distance before they become factors
+    double corner_sigma_m = 0.05;         ///< of the end of an open contour
+    double loss_scale = 2.0;              ///< Cauchy, in standard deviations
   } hand;
 
   struct Seats {

@@ -29,7 +29,7 @@ class Mapper::Impl {
 
   bool add(const Trace& trace) {
     time_s_ = trace.end_s;
-    state_.graph.touch_points[kTouch] = touch_point(config_.hand, wearer_, trace.stature_m);
+    expect_touch(touch_point(config_.hand, wearer_, trace.stature_m));
     const auto points = trace_points(trace, state_.graph, kTouch);
     const auto extraction = extract_landmarks(points, odometry_.floor_z(), config_.landmarks);
     if (extraction.observations.empty()) unresolved_.push_back({trace.begin_s, trace.end_s, extraction.reason});
@@ -60,6 +60,13 @@ class Mapper::Impl {
   static constexpr std::size_t kTouch = 0;
   static constexpr std::size_t kTrajectoryLag =
       10;  ///< key poses after which a walk is published without news of objects
+
+  /// What is expected of the hand may change as more becomes known of the wearer; what was estimated stays while it
+  /// does not.
+  void expect_touch(const graph::TouchPoint& expected) {
+    graph::TouchPoint& touch = state_.graph.touch_points[kTouch];
+    if ((touch.prior - expected.prior).norm() > 1e-3) touch = expected;
+  }
 
   void associate(std::size_t newcomer) {
     if (closer_.resolve(state_, newcomer)) closer_.reconsider(state_);

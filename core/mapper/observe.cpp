@@ -139,7 +139,8 @@ graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo
     tip = *wearer.p_hand_fingertip;
   else if (stature_m)
     tip.y() = -config.tip_per_stature * *stature_m;
-  return {tip, tip, Eigen::Vector3d::Constant(0.02), true};
+  const Eigen::Vector3d sigma(config.tip_sideways_sigma_m, config.tip_sigma_m, config.tip_sideways_sigma_m);
+  return {tip, tip, sigma, config.tip_sigma_m <= 0.0};
 }
 
 }  // namespace kinemap

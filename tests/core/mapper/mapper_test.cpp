@@ -145,6 +145,26 @@ TEST(Mapper, ATraceOnNothingIsKeptAsUnresolved) {
   EXPECT_FALSE(map->unresolved[0].reason.empty());
 }
 
+TEST(Mapper, TheTouchingPointIsEstimated) {
+  // The wearer touches 0.18 m beyond the wrist, but 0.10 m is expected: a table drawn from all around tells.
+  Wearer wearer;
+  for (int round = 0; round < 2; ++round) {
+    const auto c = level_rectangle({3.0, 1.5, 0.74}, 0.0, 1.4, 0.8);
+    const Eigen::Vector2d around[] = {{3.0, -3.0}, {8.0, 1.5}, {3.0, 6.0}, {-2.0, 1.5}};
+    wearer.walk_to(3.0, 0.0);
+    for (std::size_t k = 0; k < 4; k += 2) wearer.trace({c[k], c[k + 1], c[(k + 2) % 4]}, around[k]);
+  }
+  MapperConfig wrong = config();
+  wrong.hand.tip_m = 0.10;
+  Mapper free(wrong);
+  wrong.hand.tip_sigma_m = 0.0;
+  Mapper fixed(wrong);
+  for (const auto& event : wearer.events) free.add(event), fixed.add(event);
+  free.finish(), fixed.finish();
+  EXPECT_NEAR(free.graph().touch_points[0].p_hand.y(), -0.18, 0.03);
+  EXPECT_EQ(fixed.graph().touch_points[0].p_hand.y(), -0.10);
+}
+
 TEST(Mapper, TheTrajectoryKeepsUpWithAWalk) {
   Wearer wearer;
   wearer.walk_to(10.0, 0.0);

@@ -42,7 +42,8 @@ function show(map, trajectory, pose) {
     all.push(...room.polygon);
   }
   draw(plan, "polyline", {class: "path", points: points(path), "stroke-width": 0.03});
-  for (const o of map.objects) {
+  // Seen from above: what stands on a table is drawn after it.
+  for (const o of map.objects.sort((a, b) => (b.type === "table") - (a.type === "table"))) {
     const at = o.pose.position;
     if (o.corners) {
       draw(plan, "polygon", {class: o.type, points: points(o.corners), "stroke-width": 0.06});

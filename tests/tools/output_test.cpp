@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -152,7 +153,11 @@ TEST(Plan, WallsRunLevelOrUprightWhateverTheFrame) {
     map.trajectory.clear();
     const Plan plan = make_plan(map);
     ASSERT_EQ(plan.items.size(), 4U);
-    const Eigen::Vector2d along = plan.items[0].outline[1] - plan.items[0].outline[0];
+    EXPECT_EQ(plan.items[0].type, ObjectType::Table) << "drawn first: other things stand on it";
+    const auto wall = std::find_if(plan.items.begin(), plan.items.end(),
+                                   [](const Plan::Item& item) { return item.type == ObjectType::Wall; });
+    ASSERT_NE(wall, plan.items.end());
+    const Eigen::Vector2d along = wall->outline[1] - wall->outline[0];
     EXPECT_NEAR(along.norm(), 3.0, 1e-9);
     EXPECT_NEAR(along.cwiseAbs().minCoeff(), 0.0, 1e-9) << heading;
     const Eigen::Vector2d extent = plan.high - plan.low;

@@ -97,6 +97,9 @@ Plan make_plan(const MapSnapshot& map) {
   Plan plan;
   for (const MapObject& object : map.objects)
     if (object.type == ObjectType::Chair || (object.plane && object.corners)) plan.items.push_back(item_of(object));
+  // Seen from above: what stands on a table is drawn after it.
+  std::stable_partition(plan.items.begin(), plan.items.end(),
+                        [](const Plan::Item& item) { return item.type == ObjectType::Table; });
   for (const Room& room : map.rooms) {
     plan.rooms.push_back(room.polygon);
     plan.room_labels.push_back(format("%.1f m²", room.area_m2));

@@ -21,17 +21,6 @@ constexpr std::size_t kMostObjects = 100000;
 /// Text from outside (names) may hold anything: bytes that are no UTF-8 are replaced.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// Micrometres are far below any sigma.
-double rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
-
-Json pose_json(const Pose& pose) {
-  const double sign = pose.q.w() < 0.0 ? -1.0 : 1.0;
-  return {{"position", {rounded(pose.p.x()), rounded(pose.p.y()), rounded(pose.p.z())}},
-          {"orientation",
-           {rounded(sign * pose.q.w()), rounded(sign * pose.q.x()), rounded(sign * pose.q.y()),
-            rounded(sign * pose.q.z())}}};
-}
-
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d ab = b - a;
   const double length2 = ab.squaredNorm();
@@ -140,7 +129,7 @@ Answer query_trajectory(const MapSnapshot& map, const Params& params) {
   for (const TrajectoryPose& pose : map.trajectory) {
     if (pose.time_s < since || pose.time_s > until) continue;
     Json json = {{"id", pose.id}, {"time", rounded(pose.time_s)}};
-    json.update(pose_json(pose.T_map_pelvis));
+    json.update(to_json(pose.T_map_pelvis));
     poses.push_back(std::move(json));
   }
   return text_of({{"revision", map.revision}, {"frame", "map"}, {"poses", std::move(poses)}});
@@ -152,8 +141,8 @@ Answer query_pose(const MapSnapshot& map, const LivePose& pose) {
   const Pose T_odom_pelvis{{pose.position_m[0], pose.position_m[1], pose.position_m[2]},
                            {pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]}};
   Json json = {{"time", rounded(pose.time_s)}, {"revision", map.revision}, {"frame", "map"}};
-  json.update(pose_json(map.T_map_odom * T_odom_pelvis));
-  json["odometry"] = pose_json(T_odom_pelvis);
+  json.update(to_json(map.T_map_odom * T_odom_pelvis));
+  json["odometry"] = to_json(T_odom_pelvis);
   return text_of(json);
 }
 

@@ -14,12 +14,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kVersion = 1;
 
-/// A number rounded to a micrometre (microradian, microsecond): far below any sigma, and short to read. No −0.
-double rounded(double value) {
-  assert(std::isfinite(value));
-  return std::round(value * 1e6) / 1e6 + 0.0;
-}
-
 template <class Vector>
 Json array_of(const Vector& values) {
   Json array = Json::array();
@@ -28,14 +22,6 @@ Json array_of(const Vector& values) {
 }
 
 Json array_of(const std::array<double, 2>& values) { return {rounded(values[0]), rounded(values[1])}; }
-
-Json pose_json(const Pose& pose) {
-  // q and −q are one rotation; w ≥ 0 makes equal maps equal bytes.
-  const double sign = pose.q.w() < 0.0 ? -1.0 : 1.0;
-  return {{"position", array_of(pose.p)},
-          {"orientation", Json::array({rounded(sign * pose.q.w()), rounded(sign * pose.q.x()),
-                                       rounded(sign * pose.q.y()), rounded(sign * pose.q.z())})}};
-}
 
 /// Sigmas that are unknown (0, or not finite) are left out, as everything unknown is.
 Json sigma_json(const MapObject& object) {
@@ -68,9 +54,22 @@ Json list_json(const List& list) {
 
 }  // namespace
 
+double rounded(double value) {
+  assert(std::isfinite(value));
+  return std::round(value * 1e6) / 1e6 + 0.0;
+}
+
+Json to_json(const Pose& pose) {
+  // q and −q are one rotation; w ≥ 0 makes equal maps equal bytes.
+  const double sign = pose.q.w() < 0.0 ? -1.0 : 1.0;
+  return {{"position", array_of(pose.p)},
+          {"orientation", Json::array({rounded(sign * pose.q.w()), rounded(sign * pose.q.x()),
+                                       rounded(sign * pose.q.y()), rounded(sign * pose.q.z())})}};
+}
+
 Json to_json(const MapObject& object) {
   Json json = {{"id", object.id}, {"type", to_string(object.type)}, {"functions", object.functions}};
-  json["pose"] = pose_json(object.pose);
+  json["pose"] = to_json(object.pose);
   if (object.plane)
     json["plane"] = {{"normal", array_of(object.plane->normal)}, {"offset", rounded(object.plane->offset)}};
   if (object.corners) {
@@ -108,7 +107,7 @@ Json to_json(const MapSnapshot& map) {
   Json& unresolved = json["unresolved"] = Json::array();
   for (const UnresolvedTrace& trace : map.unresolved)
     unresolved.push_back({{"begin", rounded(trace.begin_s)}, {"end", rounded(trace.end_s)}, {"reason", trace.reason}});
-  json["correction"] = pose_json(map.T_map_odom);
+  json["correction"] = to_json(map.T_map_odom);
   json["graph"] = graph_json(map.graph);
   return json;
 }

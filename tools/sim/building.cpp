@@ -72,7 +72,9 @@ void open_doorway(Building& building, int left, double x_left, double y) {
 }
 
 void build_shells(Building& building, const SimOptions& options, Random& random) {
-  const int count = options.rooms ? *options.rooms : random.integer(1, 3);
+  // Offices of one or two rooms, as in the paper; now and then three.
+  const double draw = random.uniform();
+  const int count = options.rooms ? *options.rooms : draw < 0.45 ? 1 : draw < 0.85 ? 2 : 3;
   const int l_room = options.shell == Shell::Auto     ? (random.chance(0.35) ? random.integer(0, count - 1) : -1)
                      : options.shell == Shell::LShape ? random.integer(0, count - 1)
                                                       : -1;

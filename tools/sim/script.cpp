@@ -8,7 +8,7 @@ namespace kinemap::sim {
 
 namespace {
 
-constexpr double kShortest_s = 180.0, kLongest_s = 342.0;
+constexpr double kShortest_s = 180.0, kLongest_s = 356.0;
 
 /// Something to visit: which list, which index.
 struct Stop {
@@ -79,7 +79,8 @@ class Tour {
   }
 
   double closure_spacing() {
-    return options_.closure_spacing_m ? *options_.closure_spacing_m : random_.uniform(8.0, 25.0);
+    // The paper avoided ways longer than 5–10 m without a loop closure (section VI).
+    return options_.closure_spacing_m ? *options_.closure_spacing_m : random_.uniform(5.0, 10.0);
   }
 
   /// The stops of a room in the order of a way round it, from where the wearer is.
@@ -130,7 +131,7 @@ class Tour {
 
   /// Touches the nearest known object again when it is time to.
   void close_loop(const Stop& coming) {
-    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2 || composer_.now() > 0.6 * kLongest_s)
+    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2 || composer_.now() > 0.8 * kLongest_s)
       return;
     const Stop* best = nullptr;
     double least = 1e9;
@@ -186,7 +187,7 @@ class Tour {
   Vec2 home_{0, 0};
   bool sat_ = false;
   int latest_ = 0;
-  double last_closure_ = 0.0, next_closure_ = 15.0;
+  double last_closure_ = 0.0, next_closure_ = 8.0;
   double next_distractor_s_ = 0.0, first_round_s_ = 0.0;
 };
 

@@ -30,6 +30,12 @@ struct ObjectSigma {
   std::array<double, 2> size_m{0.0, 0.0};
 };
 
+/// When an object was traced or sat on once, stream time, s.
+struct Visit {
+  double begin_s = 0.0;
+  double end_s = 0.0;
+};
+
 /// One object of the map, in the map frame (z up, metres); protocol/README.md gives the same fields in JSON.
 struct MapObject {
   std::uint32_t id = 0;
@@ -43,6 +49,7 @@ struct MapObject {
   int observations = 0;
   double first_seen_s = 0.0;
   double last_seen_s = 0.0;
+  std::vector<Visit> visits;    ///< by ascending time; empty: not known
   bool height_assumed = false;  ///< walls: the height was not observed
 };
 

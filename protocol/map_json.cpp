@@ -82,6 +82,7 @@ Json to_json(const MapObject& object) {
   json["observations"] = object.observations;
   json["first_seen"] = rounded(object.first_seen_s);
   json["last_seen"] = rounded(object.last_seen_s);
+  for (const Visit& visit : object.visits) json["visits"].push_back({rounded(visit.begin_s), rounded(visit.end_s)});
   return json;
 }
 

@@ -62,6 +62,11 @@ MapObject read_object(const JsonCursor& json) {
   object.observations = static_cast<int>(json.at("observations").count(INT32_MAX));
   object.first_seen_s = json.at("first_seen").number();
   object.last_seen_s = json.at("last_seen").number();
+  if (json.has("visits"))
+    for (const JsonCursor& row : json.at("visits").items()) {
+      const Eigen::Vector2d visit = row.vector<2>();
+      object.visits.push_back({visit[0], visit[1]});
+    }
   return object;
 }
 

@@ -147,6 +147,11 @@ void add_record(const LandmarkRecord& record, MapObject& object) {
   object.last_seen_s = std::max(object.last_seen_s, record.last_seen_s);
 }
 
+void add_visits(const MapState& state, std::size_t landmark, MapObject& object) {
+  for (const ObservationRecord& visit : state.observations)
+    if (visit.landmark == landmark) object.visits.push_back({visit.begin_s, visit.end_s});
+}
+
 }  // namespace
 
 std::vector<MapObject> map_objects(const MapState& state, const std::vector<FiniteWall>& walls,
@@ -161,13 +166,17 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
     object.observations = record.observations;
     object.first_seen_s = record.first_seen_s;
     object.last_seen_s = record.last_seen_s;
+    add_visits(state, k, object);
     const std::array<std::size_t, 1> self{k};
     if (landmark.kind == LandmarkKind::Wall) {
       const auto wall = std::find_if(walls.begin(), walls.end(), [k](const FiniteWall& w) { return w.landmark == k; });
       if (wall == walls.end()) continue;
       describe_wall(state, *wall, config, object);
-      for (const std::size_t other : wall->stretches)
-        if (other != k) add_record(state.landmarks[other], object);
+      for (const std::size_t other : wall->stretches) {
+        if (other == k) continue;
+        add_record(state.landmarks[other], object);
+        add_visits(state, other, object);
+      }
       if (marginals) set_wall_sigma(state, walls, *wall, *marginals, config, object);
     } else {
       if (landmark.kind == LandmarkKind::Table) describe_table(landmark, object);
@@ -175,6 +184,8 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
       if (landmark.kind == LandmarkKind::Seat) describe_seat(landmark, object);
       if (marginals) set_sigma(object, covariance_of(*marginals, self), landmark.x[5] > landmark.x[4]);
     }
+    std::sort(object.visits.begin(), object.visits.end(),
+              [](const Visit& a, const Visit& b) { return a.begin_s < b.begin_s; });
     objects.push_back(std::move(object));
   }
   std::sort(objects.begin(), objects.end(), [](const MapObject& a, const MapObject& b) { return a.id < b.id; });

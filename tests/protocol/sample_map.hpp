@@ -23,6 +23,7 @@ inline MapSnapshot sample_map() {
   wall.observations = 3;
   wall.first_seen_s = 12.5;
   wall.last_seen_s = 170.0;
+  wall.visits = {{12.5, 17.25}, {90.0, 95.5}, {166.0, 170.0}};
 
   MapObject table;
   table.id = 2;

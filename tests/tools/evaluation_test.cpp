@@ -138,11 +138,11 @@ TEST(Alignment, RmseOfAKnownOffset) {
 
 TEST(Alignment, PositionBetweenSamples) {
   const std::vector<TimedPose> path = {{0.0, level_pose({0, 0, 1}, 0)}, {2.0, level_pose({4, 0, 1}, 0)}};
-  EXPECT_EQ(position_at(path, 0.5), Eigen::Vector3d(1, 0, 1));
-  EXPECT_EQ(position_at(path, 2.0), Eigen::Vector3d(4, 0, 1));
-  EXPECT_FALSE(position_at(path, 2.1));
-  EXPECT_FALSE(position_at(path, -0.1));
-  EXPECT_FALSE(position_at({}, 0.0));
+  EXPECT_EQ(pose_at(path, 0.5)->p, Eigen::Vector3d(1, 0, 1));
+  EXPECT_EQ(pose_at(path, 2.0)->p, Eigen::Vector3d(4, 0, 1));
+  EXPECT_FALSE(pose_at(path, 2.1));
+  EXPECT_FALSE(pose_at(path, -0.1));
+  EXPECT_FALSE(pose_at({}, 0.0));
 }
 
 TEST(Evaluation, APerfectMapInAnotherFrameHasNoError) {
@@ -267,6 +267,105 @@ TEST(Evaluation, PoolsSessions) {
   EXPECT_EQ(to_json(report)["classes"]["table"]["mape_percent"]["mean"], 5.0);
 }
 
+TEST(Consistency, ErrorsAreJudgedByTheSigmasOfTheMap) {
+  const Truth truth = room();
+  const Pose T_map_truth = level_pose({7, -3, 1}, 2.1);
+  MapSnapshot map = perfect_map(truth, T_map_truth);
+  MapObject& table = map.objects[2];
+  *table.size = {1.66, 0.77};
+  table.pose.p = T_map_truth * Eigen::Vector3d(3.04, 1.9, 0.74);
+  table.sigma = {0.05, 0.1, {0.03, 0.015}};
+  MapObject& wall = map.objects[0];
+  wall.pose.p = T_map_truth * Eigen::Vector3d(2.0, 0.06, 1.25);  // sliding along it is no error
+  wall.sigma.position_m = 0.02;
+  const auto result = evaluate(map, truth);
+  ASSERT_TRUE(result) << result.error();
+  const NormalisedErrors& errors = result->matches[2].normalised;
+  ASSERT_EQ(errors.size.size(), 2U);
+  EXPECT_NEAR(errors.size[0], 2.0, 1e-9);
+  EXPECT_NEAR(errors.size[1], -2.0, 1e-9);
+  ASSERT_EQ(errors.position.size(), 2U);
+  EXPECT_NEAR(errors.position[0], 0.8, 1e-9);
+  EXPECT_NEAR(errors.position[1], -2.0, 1e-9);
+  EXPECT_NEAR(errors.heading.at(0), 0.0, 1e-9);
+  EXPECT_NEAR(result->matches[0].normalised.position.at(0), 3.0, 1e-9);
+  EXPECT_TRUE(result->matches[0].normalised.size.empty()) << "the map does not say how certain it is";
+}
+
+TEST(Consistency, IsJudgedWhereTheTrajectoryBegins) {
+  // A heading that drifts: the map is right where it begins and turns away from there.
+  const Truth truth = room();
+  MapSnapshot map = perfect_map(truth, Pose{});
+  for (std::size_t i = 0; i < map.trajectory.size(); ++i)
+    map.trajectory[i].T_map_pelvis.p += Eigen::Vector3d(0.02 * static_cast<double>(i), 0, 0);
+  MapObject& chair = map.objects[5];
+  chair.sigma.position_m = 0.1;
+  chair.pose.p.x() += 0.4;
+  const auto result = evaluate(map, truth);
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_NEAR(result->matches[5].normalised.position[0], 4.0, 1e-9);
+  EXPECT_LT(std::abs(result->matches[5].normalised.aligned_position[0]), 2.0) << "drift spread over the map";
+}
+
+TEST(Consistency, OfANormalSample) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> sample(20000);
+  for (double& value : sample) value = normal(random);
+  const Consistency c = consistency_of(sample);
+  EXPECT_NEAR(c.within_1, 0.683, 0.01);
+  EXPECT_NEAR(c.within_2, 0.954, 0.01);
+  EXPECT_NEAR(c.mean, 0.0, 0.03);
+  EXPECT_NEAR(c.rms, 1.0, 0.03);
+  EXPECT_EQ(consistency_of({}).n, 0U);
+}
+
+/// Table 3 was touched at 10–20 s and 50–60 s, the table beside it, 8, at 30–40 s.
+const std::vector<TruthVisit> kTwoTables = {{3, 10, 20}, {8, 30, 40}, {3, 50, 60}};
+
+MapObject visited(std::uint32_t id, std::vector<Visit> visits) {
+  MapObject object;
+  object.id = id;
+  object.visits = std::move(visits);
+  return object;
+}
+
+TEST(Association, RightOnesAreLeftAlone) {
+  const auto check =
+      check_association({visited(1, {{9, 19}, {51, 62}}), visited(2, {{31, 39}})}, kTwoTables, {{1, 3}, {2, 8}});
+  EXPECT_EQ(check.visits, 3U);
+  EXPECT_TRUE(check.wrong.empty() && check.split.empty() && check.phantom.empty() && check.misplaced.empty());
+}
+
+TEST(Association, AWrongClosureIsTheVisitThatDoesNotBelong) {
+  const auto check = check_association({visited(1, {{9, 19}, {31, 39}, {51, 62}})}, kTwoTables, {{1, 3}});
+  ASSERT_EQ(check.wrong.size(), 1U);
+  EXPECT_EQ(check.wrong[0].object_id, 1U);
+  EXPECT_EQ(check.wrong[0].owner_id, 3U);
+  EXPECT_EQ(check.wrong[0].visited_id, 8U);
+  EXPECT_EQ(check.wrong[0].visit.begin_s, 31.0);
+  // One visit each: it belongs to the one on which it lies.
+  const auto even = check_association({visited(1, {{9, 19}, {31, 39}})}, kTwoTables, {{1, 8}});
+  ASSERT_EQ(even.wrong.size(), 1U);
+  EXPECT_EQ(even.wrong[0].owner_id, 8U);
+}
+
+TEST(Association, MissedClosuresGesturesThatMeanNothingAndSwappedObjects) {
+  const auto check = check_association(
+      {visited(1, {{9, 19}}), visited(2, {{51, 62}}), visited(5, {{42, 48}}), visited(6, {{32, 41}, {70, 71}})},
+      kTwoTables, {{1, 3}, {6, 3}});
+  EXPECT_EQ(check.split, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(check.phantom, std::vector<std::uint32_t>{5});
+  EXPECT_EQ(check.misplaced, std::vector<std::uint32_t>{6});
+  ASSERT_EQ(check.wrong.size(), 1U);
+  EXPECT_FALSE(check.wrong[0].visited_id) << "nothing was touched at 70 s";
+}
+
+TEST(Association, IsNotJudgedWithoutTimes) {
+  EXPECT_EQ(check_association({visited(1, {{9, 19}})}, {}, {}).visits, 0U);
+  EXPECT_TRUE(check_association({visited(1, {})}, kTwoTables, {}).phantom.empty());
+}
+
 TEST(Spread, OfNothingOneAndMany) {
   EXPECT_EQ(spread_of({}).n, 0U);
   EXPECT_EQ(spread_of({3.0}).std, 0.0);
@@ -297,6 +396,21 @@ TEST(Truth, Reads) {
   EXPECT_EQ(truth->objects[0].klass, Class::BigScreen) << "the truth's own word counts, not the size";
   EXPECT_EQ(truth->objects[1].klass, Class::Chair);
   EXPECT_EQ(truth->trajectory[1].pose.p, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(Truth, VisitsAreTheContactsWhereTheyAreKnown) {
+  nlohmann::json json = truth_json();
+  json["intervals"] = {
+      {{"begin", 1}, {"end", 2}, {"label", "walk"}},
+      {{"begin", 2}, {"end", 9}, {"label", "trace"}, {"object", 1}, {"contact_begin", 3}, {"contact_end", 8}},
+      {{"begin", 9}, {"end", 12}, {"label", "sit"}, {"object", 2}}};
+  const auto truth = truth_from_text(json.dump());
+  ASSERT_TRUE(truth) << truth.error();
+  ASSERT_EQ(truth->visits.size(), 2U);
+  EXPECT_EQ(truth->visits[0].begin_s, 3.0);
+  EXPECT_EQ(truth->visits[0].end_s, 8.0);
+  EXPECT_EQ(truth->visits[1].object, 2U);
+  EXPECT_EQ(truth->visits[1].end_s, 12.0);
 }
 
 TEST(Truth, ErrorsNameTheKeyPath) {

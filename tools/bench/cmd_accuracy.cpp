@@ -66,7 +66,9 @@ std::string markdown(const std::string& drift, const std::vector<Session>& sessi
   std::size_t better = 0;
   for (const Session& session : sessions)
     better += session.evaluation.rmse_optimised_m < session.evaluation.rmse_open_loop_m ? 1 : 0;
-  return "## Drift: " + drift + "\n\n" + eval::to_markdown(report_of(sessions)) +
+  const eval::Report report = report_of(sessions);
+  return "## Drift: " + drift + "\n\n" + eval::to_markdown(report) + '\n' + eval::association_markdown(report) + '\n' +
+         eval::consistency_markdown(report) + '\n' +
          format("The optimised trajectory is better than the open-loop one in %zu of %zu sessions.\n\n", better,
                 sessions.size()) +
          session_rows(sessions) + '\n';

@@ -36,17 +36,24 @@ double rmse(const Pose& T_truth_map, std::span<const Eigen::Vector3d> p_map, std
   return std::sqrt(sum / static_cast<double>(p_map.size()));
 }
 
-std::optional<Eigen::Vector3d> position_at(std::span<const TimedPose> trajectory, double time_s) {
+Pose align_at(const Pose& T_map_pelvis, const Pose& T_truth_pelvis) {
+  const double turn = heading_of(T_truth_pelvis.q) - heading_of(T_map_pelvis.q);
+  Pose T_truth_map = level_pose(Eigen::Vector3d::Zero(), turn);
+  T_truth_map.p = T_truth_pelvis.p - T_truth_map.q * T_map_pelvis.p;
+  return T_truth_map;
+}
+
+std::optional<Pose> pose_at(std::span<const TimedPose> trajectory, double time_s) {
   constexpr double kSlack = 1e-4;  // times in files are rounded to a millisecond or a microsecond
   if (trajectory.empty() || time_s < trajectory.front().time_s - kSlack || time_s > trajectory.back().time_s + kSlack)
     return std::nullopt;
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), time_s,
                                       [](const TimedPose& pose, double t) { return pose.time_s < t; });
-  if (after == trajectory.begin()) return trajectory.front().pose.p;
-  if (after == trajectory.end()) return trajectory.back().pose.p;
+  if (after == trajectory.begin()) return trajectory.front().pose;
+  if (after == trajectory.end()) return trajectory.back().pose;
   const TimedPose& a = *std::prev(after);
   const double part = (time_s - a.time_s) / (after->time_s - a.time_s);
-  return a.pose.p + part * (after->pose.p - a.pose.p);
+  return Pose{a.pose.p + part * (after->pose.p - a.pose.p), a.pose.q.slerp(part, after->pose.q)};
 }
 
 }  // namespace kinemap::eval

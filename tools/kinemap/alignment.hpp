@@ -19,7 +19,10 @@ std::optional<Pose> align(std::span<const Eigen::Vector3d> p_map, std::span<cons
 /// Root mean square of |T_truth_map · p_map − p_truth|, m.
 double rmse(const Pose& T_truth_map, std::span<const Eigen::Vector3d> p_map, std::span<const Eigen::Vector3d> p_truth);
 
-/// Position at `time_s`, linearly between samples; nullopt outside them. `trajectory` by ascending time.
-std::optional<Eigen::Vector3d> position_at(std::span<const TimedPose> trajectory, double time_s);
+/// The heading and translation `T_truth_map` that bring one pose onto its true one.
+Pose align_at(const Pose& T_map_pelvis, const Pose& T_truth_pelvis);
+
+/// Pose at `time_s`, between samples in proportion; nullopt outside them. `trajectory` by ascending time.
+std::optional<Pose> pose_at(std::span<const TimedPose> trajectory, double time_s);
 
 }  // namespace kinemap::eval

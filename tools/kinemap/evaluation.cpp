@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "core/assignment.hpp"
@@ -18,11 +19,12 @@ std::size_t index(Class c) { return static_cast<std::size_t>(c); }
 std::optional<Error> compare_trajectory(const MapSnapshot& map, const Truth& truth, Evaluation& result) {
   std::vector<Eigen::Vector3d> optimised, odometry, real;
   for (const TrajectoryPose& pose : map.trajectory) {
-    const auto p_truth = position_at(truth.trajectory, pose.time_s);
-    if (!p_truth) continue;
+    const auto T_truth_pelvis = pose_at(truth.trajectory, pose.time_s);
+    if (!T_truth_pelvis) continue;
+    if (real.empty()) result.T_truth_start = align_at(pose.T_map_pelvis, *T_truth_pelvis);
     optimised.push_back(pose.T_map_pelvis.p);
     odometry.push_back(pose.T_odom_pelvis.p);
-    real.push_back(*p_truth);
+    real.push_back(T_truth_pelvis->p);
   }
   const auto T_truth_map = align(optimised, real), T_truth_odom = align(odometry, real);
   if (!T_truth_map || !T_truth_odom)
@@ -36,9 +38,8 @@ std::optional<Error> compare_trajectory(const MapSnapshot& map, const Truth& tru
 }
 
 Match match_of(const TruthObject& truth, const MapObject& object, const Shape& real, const Shape& estimate) {
-  Match match{truth.id, object.id, truth.klass, {}, 0.0, 0.0, 0.0};
-  const std::size_t edges = truth.type == ObjectType::Chair ? 0 : truth.type == ObjectType::Wall ? 1 : 2;
-  for (std::size_t i = 0; i < edges; ++i)
+  Match match{truth.id, object.id, truth.klass, {}, 0.0, 0.0, 0.0, {}};
+  for (std::size_t i = 0; i < edge_count(truth.type); ++i)
     match.edge_errors_percent.push_back(100.0 * std::abs(estimate.size[i] - real.size[i]) / real.size[i]);
   match.level_error_m = level_error(real, estimate);
   match.height_error_m = estimate.centre.z() - real.centre.z();
@@ -86,6 +87,8 @@ void compare_objects(const MapSnapshot& map, const Truth& truth, Evaluation& res
     ++counts.found;
     ++counts.estimated;
     result.matches.push_back(match_of(truth.objects[r], map.objects[e], real[r], estimates[e]));
+    result.matches.back().normalised =
+        normalised_errors(real[r], map.objects[e], {.from_start = result.T_truth_start, .aligned = result.T_truth_map});
   }
   for (std::size_t e = 0; e < estimates.size(); ++e)
     if (!taken[e]) count_unmatched(map.objects[e], estimates[e], truth, real, result);
@@ -103,6 +106,9 @@ Result<Evaluation> evaluate(const MapSnapshot& map, const Truth& truth) {
   Evaluation result;
   if (auto error = compare_trajectory(map, truth, result)) return *error;
   compare_objects(map, truth, result);
+  std::map<std::uint32_t, std::uint32_t> truth_of;
+  for (const Match& match : result.matches) truth_of[match.object_id] = match.truth_id;
+  result.association = check_association(map.objects, truth.visits, truth_of);
   return result;
 }
 

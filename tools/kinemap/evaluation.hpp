@@ -10,6 +10,8 @@
 
 #include "core/map.hpp"
 #include "protocol/wire/result.hpp"
+#include "tools/kinemap/association.hpp"
+#include "tools/kinemap/consistency.hpp"
 #include "tools/kinemap/truth.hpp"
 
 /// How good a map is against the truth, by the measures of the paper (section VI). Uses no code of the estimator, only
@@ -33,6 +35,7 @@ struct Match {
   double level_error_m = 0.0;      ///< centre, in the plane of the floor, after the alignment; walls: across the wall
   double height_error_m = 0.0;     ///< centre z, signed
   double heading_error_rad = 0.0;  ///< ≥ 0; tables modulo 90°
+  NormalisedErrors normalised;
 
   [[nodiscard]] double mape_percent() const;  ///< mean of edge_errors_percent
 };
@@ -53,7 +56,9 @@ struct Evaluation {
   std::size_t poses = 0;
   double rmse_open_loop_m = 0.0;  ///< the suit's own key poses, after their own alignment
   double rmse_optimised_m = 0.0;
-  Pose T_truth_map;
+  Pose T_truth_map;    ///< least squares over the trajectory
+  Pose T_truth_start;  ///< the map brought onto the truth at its first pose, where its sigmas are zero
+  AssociationCheck association;
 };
 
 /// Compares. Needs at least two trajectory poses inside the truth's time; else an Error.
@@ -66,10 +71,12 @@ struct Report {
     Spread mape_percent;  ///< over objects
     Spread level_error_m;
     Spread heading_error_rad;
+    NormalisedErrors normalised;  ///< of all matches
   };
   std::size_t sessions = 0;
   std::array<PerClass, kClassCount> classes;
   ClassCounts total;
+  AssociationCounts association;
   Spread rmse_open_loop_m, rmse_optimised_m;
 };
 Report summarise(const std::vector<Evaluation>& sessions);
@@ -81,7 +88,9 @@ double precision(const ClassCounts& counts);
 
 nlohmann::ordered_json to_json(const Report& report);
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
-/// A table for people, with lines of Markdown.
+/// Tables for people, with lines of Markdown.
 std::string to_markdown(const Report& report);
+std::string consistency_markdown(const Report& report);
+std::string association_markdown(const Report& report);
 
 }  // namespace kinemap::eval

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
@@ -43,24 +42,55 @@ Json counts_json(const ClassCounts& counts) {
           {"precision", rounded(precision(counts))}};
 }
 
-std::string text(const char* format, auto... values) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
+Json to_json(const Consistency& consistency) {
+  if (consistency.n == 0) return {{"n", 0}};
+  return {{"n", consistency.n},
+          {"within_1_sigma", rounded(consistency.within_1)},
+          {"within_2_sigma", rounded(consistency.within_2)},
+          {"mean", rounded(consistency.mean)},
+          {"rms", rounded(consistency.rms)}};
 }
 
-std::string spread_text(const Spread& spread, const char* format, double factor = 1.0) {
-  return spread.n ? text(format, factor * spread.mean, factor * spread.std) : "–";
+Json consistency_json(const NormalisedErrors& errors, bool edges) {
+  Json json;
+  if (edges) json["size"] = to_json(consistency_of(errors.size));
+  json["position"] = to_json(consistency_of(errors.position));
+  json["heading"] = to_json(consistency_of(errors.heading));
+  json["aligned_position"] = to_json(consistency_of(errors.aligned_position));
+  json["aligned_heading"] = to_json(consistency_of(errors.aligned_heading));
+  return json;
 }
 
-std::string class_row(const char* name, const Report::PerClass& row, bool edges) {
-  const ClassCounts& counts = row.counts;
-  return "| " + std::string(name) + " | " + (edges ? spread_text(row.mape_percent, "%.1f ± %.1f") : "–") + " | " +
-         (edges && row.mape_percent.n ? text("%.1f", row.mape_percent.median) : "–") + " | " +
-         text("%zu / %zu", counts.found, counts.truth) + " | " + text("%.1f", 100 * recall(counts)) + " | " +
-         text("%.1f", 100 * precision(counts)) + " | " + text("%zu", counts.duplicates) + " | " +
-         spread_text(row.level_error_m, "%.2f ± %.2f") + " | " +
-         spread_text(row.heading_error_rad, "%.1f ± %.1f", kDegrees) + " |\n";
+Json list_json(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(rounded(value));
+  return list;
+}
+
+Json to_json(const NormalisedErrors& errors) {
+  Json json;
+  if (!errors.size.empty()) json["size"] = list_json(errors.size);
+  json["position"] = list_json(errors.position);
+  json["heading"] = list_json(errors.heading);
+  json["aligned_position"] = list_json(errors.aligned_position);
+  json["aligned_heading"] = list_json(errors.aligned_heading);
+  return json;
+}
+
+Json to_json(const AssociationCheck& check) {
+  Json wrong = Json::array();
+  for (const WrongVisit& visit : check.wrong) {
+    Json row = {{"object_id", visit.object_id}, {"truth_id", visit.owner_id}};
+    if (visit.visited_id) row["visited_truth_id"] = *visit.visited_id;
+    row["begin_s"] = rounded(visit.visit.begin_s);
+    row["end_s"] = rounded(visit.visit.end_s);
+    wrong.push_back(std::move(row));
+  }
+  return {{"visits", check.visits},
+          {"wrong_visits", std::move(wrong)},
+          {"split", check.split},
+          {"phantom", check.phantom},
+          {"misplaced", check.misplaced}};
 }
 
 }  // namespace
@@ -104,7 +134,9 @@ Report summarise(const std::vector<Evaluation>& sessions) {
       if (!match.edge_errors_percent.empty()) mape[c].push_back(match.mape_percent());
       level[c].push_back(match.level_error_m);
       heading[c].push_back(match.heading_error_rad);
+      report.classes[c].normalised.add(match.normalised);
     }
+    report.association.add(session.association);
     open_loop.push_back(session.rmse_open_loop_m);
     optimised.push_back(session.rmse_optimised_m);
   }
@@ -126,8 +158,15 @@ Json to_json(const Report& report) {
     if (static_cast<Class>(c) != Class::Chair) entry["mape_percent"] = spread_json(row.mape_percent);
     entry["position_error_m"] = spread_json(row.level_error_m);
     entry["heading_error_deg"] = spread_json(row.heading_error_rad, kDegrees);
+    entry["normalised_errors"] = consistency_json(row.normalised, static_cast<Class>(c) != Class::Chair);
   }
   json["all"] = counts_json(report.total);
+  const AssociationCounts& association = report.association;
+  json["association"] = {{"visits", association.visits},
+                         {"wrong_visits", association.wrong},
+                         {"split", association.split},
+                         {"phantom", association.phantom},
+                         {"misplaced", association.misplaced}};
   json["trajectory"] = {{"rmse_open_loop_m", spread_json(report.rmse_open_loop_m)},
                         {"rmse_optimised_m", spread_json(report.rmse_optimised_m)}};
   return json;
@@ -140,35 +179,18 @@ Json to_json(const Evaluation& evaluation) {
                {"matches", Json::array()}};
   for (const Match& match : evaluation.matches) {
     Json row = {{"truth_id", match.truth_id}, {"object_id", match.object_id}, {"class", to_string(match.klass)}};
-    if (!match.edge_errors_percent.empty()) {
-      Json& edges = row["edge_errors_percent"] = Json::array();
-      for (const double error : match.edge_errors_percent) edges.push_back(rounded(error));
-    }
+    if (!match.edge_errors_percent.empty()) row["edge_errors_percent"] = list_json(match.edge_errors_percent);
     row["position_error_m"] = rounded(match.level_error_m);
     row["height_error_m"] = rounded(match.height_error_m);
     row["heading_error_deg"] = rounded(kDegrees * match.heading_error_rad);
+    row["normalised_errors"] = to_json(match.normalised);
     json["matches"].push_back(std::move(row));
   }
   json["missed"] = evaluation.missed;
   json["spurious"] = evaluation.spurious;
   json["duplicates"] = evaluation.duplicates;
+  json["association"] = to_json(evaluation.association);
   return json;
-}
-
-std::string to_markdown(const Report& report) {
-  std::string table =
-      "| class | edge error % | median % | found | recall % | precision % | duplicates | position m | heading ° |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
-  for (std::size_t c = 0; c < kClassCount; ++c) {
-    const auto klass = static_cast<Class>(c);
-    table += class_row(to_string(klass), report.classes[c], klass != Class::Chair);
-  }
-  Report::PerClass all;
-  all.counts = report.total;
-  table += class_row("all", all, false);
-  table += "\nTrajectory RMSE: open loop " + spread_text(report.rmse_open_loop_m, "%.3f ± %.3f m") + ", optimised " +
-           spread_text(report.rmse_optimised_m, "%.3f ± %.3f m") + text(" (%zu sessions)\n", report.sessions);
-  return table;
 }
 
 }  // namespace kinemap::eval

@@ -21,9 +21,6 @@ constexpr double kSquare = 1.15;  ///< long / short below which nobody can tell 
 
 Eigen::Vector2d direction(double heading) { return {std::cos(heading), std::sin(heading)}; }
 
-/// Angle folded into [0, period/2].
-double folded(double angle, double period) { return std::abs(std::remainder(angle, period)); }
-
 double table_heading(const MapObject& object) {
   if (!object.corners) return heading_of(object.pose.q);
   const auto& c = *object.corners;
@@ -62,10 +59,16 @@ Shape shape_of(const MapObject& object, const Pose& T_truth_map) {
   return shape;
 }
 
+std::size_t edge_count(ObjectType type) { return type == ObjectType::Chair ? 0 : type == ObjectType::Wall ? 1 : 2; }
+
+double heading_difference(const Shape& truth, const Shape& estimate) {
+  const bool square = truth.size[0] < kSquare * truth.size[1];
+  const double period = truth.type != ObjectType::Table ? 2 * kPi : square ? kPi / 2 : kPi;
+  return std::remainder(estimate.heading - truth.heading, period);
+}
+
 double heading_error(const Shape& truth, const Shape& estimate) {
-  const double difference = estimate.heading - truth.heading;
-  if (truth.type != ObjectType::Table) return folded(difference, 2 * kPi);
-  return folded(difference, truth.size[0] < kSquare * truth.size[1] ? kPi / 2 : kPi);
+  return std::abs(heading_difference(truth, estimate));
 }
 
 double level_error(const Shape& truth, const Shape& estimate) {

@@ -21,7 +21,14 @@ struct Shape {
 Shape shape_of(const TruthObject& object);
 Shape shape_of(const MapObject& object, const Pose& T_truth_map);
 
-/// Difference of heading in [0, π]; of tables in [0, π/2] (a side has no sense), of square ones in [0, π/4].
+/// How many edges of its size are judged: a wall's height is assumed, a chair has none.
+std::size_t edge_count(ObjectType type);
+
+/// Estimated less true heading, the nearer way round: in ±π; of tables in ±π/2 (a side has no sense), of square ones in
+/// ±π/4.
+double heading_difference(const Shape& truth, const Shape& estimate);
+
+/// Its size.
 double heading_error(const Shape& truth, const Shape& estimate);
 
 /// Distance of centres in the plane of the floor; of walls: of the true centre across the estimated wall.

@@ -29,6 +29,19 @@ TruthObject read_object(const JsonCursor& json) {
   return object;
 }
 
+/// Intervals that concern an object; where the contact itself is known, only that.
+std::vector<TruthVisit> read_visits(const JsonCursor& json) {
+  std::vector<TruthVisit> visits;
+  for (const JsonCursor& row : json.items()) {
+    if (!row.has("object")) continue;
+    const bool contact = row.has("contact_begin");
+    visits.push_back({static_cast<std::uint32_t>(row.at("object").count(UINT32_MAX)),
+                      row.at(contact ? "contact_begin" : "begin").number(),
+                      row.at(contact ? "contact_end" : "end").number()});
+  }
+  return visits;
+}
+
 /// A row is [t, x, y, z, qw, qx, qy, qz].
 std::vector<TimedPose> read_trajectory(const JsonCursor& json) {
   std::vector<TimedPose> trajectory;
@@ -53,6 +66,7 @@ Result<Truth> truth_from_text(const std::string& text) {
   for (const JsonCursor& object : root.at("objects").items()) truth.objects.push_back(read_object(object));
   truth.untouched = root.at("unvisited").items().size();
   truth.trajectory = read_trajectory(root.at("trajectory"));
+  if (root.has("intervals")) truth.visits = read_visits(root.at("intervals"));
   if (error) return *error;
   return truth;
 }

@@ -30,11 +30,19 @@ struct TruthObject {
   std::array<double, 2> size{};  ///< [long, short], walls [length, height], m; zero for chairs
 };
 
+/// A time in which the wearer really touched or sat on one of the objects, s.
+struct TruthVisit {
+  std::uint32_t object = 0;  ///< its id
+  double begin_s = 0.0;
+  double end_s = 0.0;
+};
+
 /// What `kinemap sim` says of a session.
 struct Truth {
   std::vector<TruthObject> objects;   ///< those that the wearer touched or sat on
   std::size_t untouched = 0;          ///< others: nobody can find them
   std::vector<TimedPose> trajectory;  ///< true pelvis, by ascending time (s since the first frame)
+  std::vector<TruthVisit> visits;     ///< empty: not known
 };
 
 /// Reads a truth.json. The Error names the key path.

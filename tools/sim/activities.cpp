@@ -35,10 +35,8 @@ void phone(Composer& c) {
 
 void hands_on_hips(Composer& c) {
   const auto& w = c.wearer();
-  const double angle = w.elbow_angle + c.random().uniform(-0.1, 0.1);
-  c.stand(both_to(c, postures::on_hip(w, Side::Right, angle, w.hip_hand),
-                  postures::on_hip(w, Side::Left, angle, w.hip_hand), 0.7) -
-          c.now());
+  const HipStyle style = hip_of_gesture(w.habits, w.sloppiness, c.random());
+  c.stand(both_to(c, postures::on_hip(w, Side::Right, style), postures::on_hip(w, Side::Left, style), 0.7) - c.now());
   c.stand(c.random().uniform(1.5, 4.0));
   hands_down(c);
 }

@@ -108,26 +108,33 @@ void Composer::follow(const std::vector<Vec2>& ground, const std::vector<double>
 }
 
 ArmGoal Composer::hip_goal() {
-  const Vec2 scatter(random_.normal(0.008), random_.normal(0.006));
-  return postures::on_hip(wearer_, Side::Left, wearer_.elbow_angle + random_.normal(0.04), wearer_.hip_hand + scatter);
+  return postures::on_hip(wearer_, Side::Left, hip_of_gesture(wearer_.habits, wearer_.sloppiness, random_));
 }
 
-double Composer::begin_gesture() {
-  // The left hand may leave a moment before one stands still.
-  const double raise = random_.uniform(0.45, 0.75), begin = now() - random_.uniform(0.0, 0.35);
-  const double on_hip = std::max(begin, score_.left.last_end()) + raise, reach = random_.uniform(0.5, 0.9);
-  const double contact = std::max({on_hip + random_.uniform(0.2, 0.8), now() + 0.2, score_.right.last_end() + reach});
+Composer::Lead Composer::begin_gesture() {
+  ++gestures_;
+  // The left hand may leave before one stands still.
+  const double early = random_.uniform(0.0, wearer_.habits.lead_s), raise = random_.uniform(0.45, 0.75);
+  const double begin = std::max(now() - early, score_.left.last_end()), on_hip = begin + raise;
   score_.left.to(begin, on_hip, hip_goal());
+  return {begin, reach_out(on_hip + random_.uniform(0.2, 0.8))};
+}
+
+double Composer::reach_out(double earliest_s) {
+  const double reach = random_.uniform(0.5, 0.9);
+  const double contact = std::max({earliest_s, now() + 0.2, score_.right.last_end() + reach});
   score_.right.to(contact - reach, contact, postures::touching(score_.touches.size()));
   stand(contact - now());
   return contact;
 }
 
-void Composer::end_gesture() {
-  const double leave = now(), let_go = leave + random_.uniform(0.2, 0.8);
+double Composer::end_gesture() {
+  const double leave = now(), let_go = leave + random_.uniform(0.05, wearer_.habits.trail_s);
   score_.right.to(leave, leave + random_.uniform(0.5, 0.9), hang(Side::Right));
   score_.left.to(let_go, let_go + random_.uniform(0.45, 0.75), hang(Side::Left));
-  stand(let_go - leave + random_.uniform(0.05, 0.4));
+  const bool walks_off = random_.chance(wearer_.habits.walk_off_chance);
+  stand(walks_off ? random_.uniform(0.05, 0.3) : let_go - leave + random_.uniform(0.05, 0.4));
+  return std::max(let_go, now());
 }
 
 }  // namespace kinemap::sim

@@ -25,11 +25,19 @@ class Composer {
   bool walk_to(const Vec2& goal, std::optional<double> heading);
   /// Appends a given motion of the body over the floor; headings are unwrapped here.
   void follow(const std::vector<Vec2>& ground, const std::vector<double>& heading);
-  /// Begins a gesture: left hand to the hip, then the right one to the first point of the touch that is added next.
-  /// Returns the time of contact.
-  double begin_gesture();
-  /// Ends it at now: the right hand leaves, then the left one.
-  void end_gesture();
+  /// Begins a gesture: left hand to the hip, perhaps while still on the way, then the right one to the first point of
+  /// the touch that is added next. When the left hand sets out, and when the right one arrives.
+  struct Lead {
+    double begin_s, contact_s;
+  };
+  Lead begin_gesture();
+  /// The right hand goes to the first point of the touch that is added next; there at the earliest at `earliest_s`.
+  /// Stands until then; returns when.
+  double reach_out(double earliest_s);
+  /// Ends it at now: the right hand leaves, then the left one (or nearly at once). Returns when the left one sets out
+  /// or the right one has left, whichever is later.
+  double end_gesture();
+  [[nodiscard]] int gestures() const { return gestures_; }  ///< begun so far
   void label(const Interval& interval) { score_.intervals.push_back(interval); }
 
   [[nodiscard]] double now() const { return score_.now(); }
@@ -47,7 +55,7 @@ class Composer {
   [[nodiscard]] const Building& building() const { return building_; }
   [[nodiscard]] double speed_factor() const { return speed_; }
   [[nodiscard]] ArmGoal hang(Side side) const { return postures::hanging(wearer_, side); }
-  ArmGoal hip_goal();  ///< the left hand on the hip, nearly as always
+  ArmGoal hip_goal();  ///< the left hand on the hip, as in the next gesture
 
  private:
   void push(const Vec2& ground, double heading);
@@ -59,6 +67,7 @@ class Composer {
   double speed_;
   Score score_;
   double walked_ = 0.0;
+  int gestures_ = 0;
 };
 
 }  // namespace kinemap::sim

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
-#include "tools/sim/geometry.hpp"
-#include "tools/sim/random.hpp"
+#include "tools/sim/habits.hpp"
 
 namespace kinemap::sim {
 
@@ -19,15 +19,20 @@ struct Contour {
 struct ContourSample {
   Vec3 p;
   Vec3 outward;
+  bool lifted = false;  ///< off the surface
 };
 
-struct TracingHabit {
-  double speed = 0.28;      ///< m/s
-  double sloppiness = 0.5;  ///< 0 careful … 1 careless: wider corners, more and higher lift-offs, shakier line
-};
+/// Room for a hand at this place? (There may be a wall beside a table's corner.)
+using HandRoom = std::function<bool(const Vec3&)>;
 
-/// The finger's way over time: slows and pauses at corners, cuts them by up to 4 cm, trembles by some millimetres,
-/// lifts off now and then.
-std::vector<ContourSample> run_along(const Contour& contour, const TracingHabit& habit, double rate_hz, Random& random);
+/// The finger's way over time: slows and rests at corners, cuts or overshoots them, rests on the way, trembles, leaves
+/// the surface now and then. `speed` in m/s.
+std::vector<ContourSample> run_along(const Contour& contour, const Habits& habits, double speed, double rate_hz,
+                                     const HandRoom& has_room, Random& random);
+
+/// Lets the hand leave the surface (unit normal `surface`) now and then for 0.3–1 s while it goes on; never near the
+/// points `keep`, which make an object's size.
+void lift_off(std::vector<ContourSample>& samples, const Vec3& surface, const std::vector<Vec3>& keep,
+              const Habits& habits, double rate_hz, Random& random);
 
 }  // namespace kinemap::sim

@@ -15,18 +15,22 @@ struct Stance {
   double follow_s = 0.5;   ///< smoothing of the body's way
 };
 
-/// The motion of one gesture: hand samples and the body with them.
-struct Gesture {
+/// The motion along one object: hand samples and the body with them.
+struct Stroke {
+  int object = 0;
   std::vector<TouchPoint> touch;
+  std::vector<bool> lifted;  ///< per sample: off the surface
   std::vector<Vec2> ground;
   std::vector<double> heading;
+  int part = 1, parts = 1;  ///< of an object that is drawn in several gestures
 };
 
 /// The body's way along with the hand: on the outward side of what is touched, clear of everything. Touches are left to
 /// the caller.
-Gesture accompany(Composer& composer, const std::vector<ContourSample>& samples, const Stance& stance);
+Stroke accompany(Composer& composer, int object, const std::vector<ContourSample>& samples, const Stance& stance);
 
-/// Walks to the start, makes the gesture, and labels it. False when one cannot get there.
-bool perform(Composer& composer, const Gesture& gesture, int object);
+/// Walks to the start, makes one gesture along all the strokes, and labels each. Objects that were drawn; none when one
+/// cannot get there.
+std::vector<int> perform(Composer& composer, const std::vector<Stroke>& strokes);
 
 }  // namespace kinemap::sim

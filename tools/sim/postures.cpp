@@ -30,16 +30,15 @@ ArmGoal hanging(const Wearer& wearer, Side side) {
   return g;
 }
 
-ArmGoal on_hip(const Wearer& wearer, Side side, double elbow_angle, const Vec2& offset) {
+ArmGoal on_hip(const Wearer& wearer, Side side, const HipStyle& style) {
   const Body& b = wearer.body;
   const double a = b.upper_arm(side), f = b.forearm(side);
-  const double distance = std::sqrt(a * a + f * f - 2 * a * f * std::cos(elbow_angle));
+  const double distance = std::sqrt(a * a + f * f - 2 * a * f * std::cos(style.elbow_angle));
   // The shoulder over the pelvis, upright.
   const Vec3 shoulder = b.offset[kL5] + b.offset[kL3] + b.offset[kT12] + b.offset[kT8] + b.offset[kLeftShoulder] +
                         b.offset[kLeftUpperArm];
-  ArmGoal g =
-      goal(wearer, side, Anchor::Pelvis, Vec3::Zero(), {-0.45, 1.0, -0.1}, {0.75, -0.55, -0.35}, {0.1, -0.7, -0.7});
-  const Vec2 level(-0.02 + offset.x(), 0.165 * b.stature / 1.75 + offset.y());
+  ArmGoal g = goal(wearer, side, Anchor::Pelvis, Vec3::Zero(), style.elbow, style.fingers, style.palm);
+  const Vec2 level(-0.02 + style.offset.x(), 0.165 * b.stature / 1.75 + style.offset.y());
   const double across = (Vec2(shoulder.x(), shoulder.y()) - level).norm();
   const double down = std::sqrt(std::max(0.0, distance * distance - across * across));
   g.wrist = Vec3(level.x(), level.y() * lateral(side), shoulder.z() - down);

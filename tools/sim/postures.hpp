@@ -8,8 +8,8 @@
 namespace kinemap::sim::postures {
 
 ArmGoal hanging(const Wearer& wearer, Side side);
-/// Hand on its own hip with the given angle inside the elbow; `offset`: forward and outward of the usual place, m.
-ArmGoal on_hip(const Wearer& wearer, Side side, double elbow_angle, const Vec2& offset);
+/// Hand on its own hip.
+ArmGoal on_hip(const Wearer& wearer, Side side, const HipStyle& style);
 ArmGoal phone_at_ear(const Wearer& wearer, Side side);
 ArmGoal crossed(const Wearer& wearer, Side side);
 ArmGoal in_the_air(const Wearer& wearer, Side side);

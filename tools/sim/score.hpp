@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/sim/geometry.hpp"
@@ -84,6 +85,9 @@ struct Interval {
   std::string label;                                    ///< "trace", "sit", "walk", "distractor:…"
   int object = 0;                                       ///< 0: none
   double contact_begin_s = -1.0, contact_end_s = -1.0;  ///< right hand on the object, or seated
+  int gesture = 0;                                      ///< which gesture, from 1; objects drawn in one share it
+  int part = 1, parts = 1;                              ///< of an object that is drawn in several gestures
+  std::vector<std::pair<double, double>> lift_offs{};   ///< the hand is off the surface, s
 };
 
 /// All that the wearer means to do, before feet and joints: where the body goes and where the hands are. Building's

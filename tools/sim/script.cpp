@@ -107,14 +107,16 @@ class Tour {
     std::vector<int> rooms;
     for (std::size_t i = 0; i < building_.rooms.size(); ++i) rooms.push_back(static_cast<int>(i));
     if (round % 2 == 1) std::reverse(rooms.begin(), rooms.end());
+    this_round_.clear();
     for (const int room : rooms) {
       ccw_[static_cast<std::size_t>(room)] = random_.chance(0.7);
       for (const auto& stop : in_order(room)) {
+        if (this_round_.count(stop.id) != 0 && random_.chance(0.8)) continue;  // drawn together with another one
         const bool wall = stop.kind == Stop::Kind::Wall;
         const double wanted = round > 0 ? share : late(room) ? (wall ? 0.85 : 0.6) : wall ? 1.0 : 0.97;
         if (round == 0 && composer_.now() > 0.82 * kLongest_s) continue;  // time for a second round must be left
         const bool first_seat = stop.kind == Stop::Kind::Chair && !sat_;
-        if (composer_.now() > kLongest_s - 18.0 || (!random_.chance(wanted) && !first_seat)) continue;
+        if (composer_.now() > kLongest_s - 28.0 || (!random_.chance(wanted) && !first_seat)) continue;
         if (round == 0) close_loop(stop);
         maybe_distract();
         visit(stop, false);
@@ -154,27 +156,60 @@ class Tour {
   }
 
   void visit(const Stop& stop, bool brief) {
-    bool done = false;
+    for (const int id : draw(stop, brief)) {
+      latest_ = id;
+      this_round_.insert(id);
+      if (!touched_.insert(id).second) last_closure_ = composer_.walked();
+    }
+  }
+
+  /// Ids of what was touched or sat on: several when the wearer goes on to the next thing in the same gesture.
+  std::vector<int> draw(const Stop& stop, bool brief) {
+    const bool goes_on =
+        !brief && composer_.now() < kLongest_s - 60.0 && random_.chance(composer_.wearer().habits.chain_chance);
     switch (stop.kind) {
       case Stop::Kind::Wall: {
+        const WallFace& wall = building_.walls[stop.index];
         const bool at_right = ccw_[static_cast<std::size_t>(stop.room)] ? random_.chance(0.85) : random_.chance(0.4);
+        if (goes_on) {
+          const auto drawn = trace_wall_corner(composer_, wall, wall_after(wall), at_right);
+          if (!drawn.empty()) return drawn;
+        }
         const auto extent = brief ? WallExtent::Brief : late(stop.room) ? WallExtent::Longest : WallExtent::All;
-        done = trace_wall(composer_, building_.walls[stop.index], at_right, extent);
-        break;
+        return trace_wall(composer_, wall, at_right, extent);
       }
       case Stop::Kind::Table:
-        done = trace_table(composer_, building_.tables[stop.index]);
-        break;
-      case Stop::Kind::Screen:
-        done = trace_screen(composer_, building_.screens[stop.index]);
-        break;
-      case Stop::Kind::Chair:
-        done = sit_on(composer_, building_.chairs[stop.index]);
-        break;
+        return trace_table(composer_, building_.tables[stop.index]);
+      case Stop::Kind::Screen: {
+        std::vector<const Screen*> screens{&building_.screens[stop.index]};
+        if (const Screen* next = goes_on ? screen_near(*screens[0]) : nullptr) screens.push_back(next);
+        return trace_screens(composer_, screens);
+      }
+      case Stop::Kind::Chair: {
+        const Chair& chair = building_.chairs[stop.index];
+        if (!sit_on(composer_, chair)) return {};
+        sat_ = true;
+        return {chair.id};
+      }
     }
-    if (!done) return;
-    latest_ = stop.id;
-    if (!touched_.insert(stop.id).second) last_closure_ = composer_.walked();
+    return {};
+  }
+
+  /// The wall that begins where this one ends.
+  [[nodiscard]] const WallFace& wall_after(const WallFace& wall) const {
+    return *std::find_if(building_.walls.begin(), building_.walls.end(),
+                         [&](const WallFace& w) { return w.room == wall.room && (w.a - wall.b).norm() < 1e-9; });
+  }
+  /// Another screen, not yet drawn in this round, within some steps.
+  [[nodiscard]] const Screen* screen_near(const Screen& screen) const {
+    const Screen* best = nullptr;
+    double least = 3.0;
+    for (const auto& s : building_.screens) {
+      const double d = (s.centre - screen.centre).norm();
+      if (s.id == screen.id || s.room != screen.room || this_round_.count(s.id) != 0 || d > least) continue;
+      least = d, best = &s;
+    }
+    return best;
   }
 
   const SimOptions& options_;
@@ -183,7 +218,7 @@ class Tour {
   Composer composer_;
   std::vector<Stop> stops_;
   std::vector<bool> ccw_;
-  std::set<int> touched_;
+  std::set<int> touched_, this_round_;
   Vec2 home_{0, 0};
   bool sat_ = false;
   int latest_ = 0;

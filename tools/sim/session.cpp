@@ -14,11 +14,10 @@ Wearer make_wearer(const SimOptions& options, const DriftColumn& column, Random&
                               : 0.105 * stature + random.bounded_normal(column.touch_spread_m, 2.5);
   const double thick = (w.palm ? 0.022 : 0.008) + std::abs(random.bounded_normal(column.thickness_spread_m, 2.5));
   w.p_hand_touch = Vec3(0.0, -along, -thick);
-  w.elbow_angle = radians(random.uniform(60.0, 100.0));
-  w.hip_hand = Vec2(random.uniform(-0.05, 0.05), random.uniform(-0.01, 0.04));
   w.walk_speed = random.uniform(0.9, 1.2);
   w.trace_speed = random.uniform(0.24, 0.34);
   w.sloppiness = options.sloppiness;
+  w.habits = draw_habits(options.sloppiness, random);
   return w;
 }
 

@@ -72,7 +72,7 @@ Json wearer_json(const Session& session) {
           {"touch_m", rounded(-w.p_hand_touch.y())},
           {"palm", w.palm},
           {"touch_point_in_hand_m", array_of(w.p_hand_touch)},
-          {"elbow_angle_rad", rounded(w.elbow_angle)}};
+          {"elbow_angle_rad", rounded(w.habits.hip.elbow_angle)}};
 }
 
 Json rooms_json(const Session& session) {
@@ -108,10 +108,13 @@ Json intervals_json(const Session& session) {
   for (const auto& i : intervals) {
     Json o{{"begin", rounded(i.begin_s)}, {"end", rounded(i.end_s)}, {"label", i.label}};
     if (i.object != 0) o["object"] = i.object;
+    if (i.gesture != 0) o["gesture"] = i.gesture;
+    if (i.parts > 1) o["part"] = i.part, o["parts"] = i.parts;
     if (i.contact_begin_s >= 0.0) {
       o["contact_begin"] = rounded(i.contact_begin_s);
       o["contact_end"] = rounded(i.contact_end_s);
     }
+    for (const auto& [from, to] : i.lift_offs) o["lift_offs"].push_back({rounded(from), rounded(to)});
     list.push_back(o);
   }
   return list;

@@ -13,6 +13,10 @@ namespace kinemap::sim {
 /// Planar objects: `pose` has +x along a table's longer side, or along the normal of a wall or screen (towards the
 /// wearer). A wall is one edge of a room's polygon, corner to corner, even where a doorway breaks it; a partition is
 /// two walls.
+///
+/// Intervals of tracing: `gesture` counts the times that the left hand went to the hip; two intervals with one number
+/// are two objects drawn in one gesture. `part` of `parts`: the object was drawn in so many gestures, one after the
+/// other. `lift_offs`: when, during contact, the hand was off the surface.
 class TruthWriter {
  public:
   explicit TruthWriter(const Session& session) : session_(session) {}

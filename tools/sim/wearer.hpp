@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/sim/body.hpp"
+#include "tools/sim/habits.hpp"
 
 namespace kinemap::sim {
 
@@ -10,11 +11,10 @@ struct Wearer {
   Body body;
   bool palm = false;           ///< touches with the flat palm instead of the finger tips
   Vec3 p_hand_touch{0, 0, 0};  ///< the touching point in the right hand's segment frame, m
-  double elbow_angle = 1.4;    ///< inside the left elbow with the hand on the hip, rad
-  Vec2 hip_hand{0, 0};         ///< where on the hip the left hand rests: offset forward and outward, m
   double walk_speed = 1.0;     ///< m/s
   double trace_speed = 0.28;   ///< m/s, on tables and screens
   double sloppiness = 0.5;     ///< 0–1
+  Habits habits;
 };
 
 }  // namespace kinemap::sim

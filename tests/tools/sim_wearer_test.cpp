@@ -39,10 +39,17 @@ bool off_the_surface(const Interval& trace, double t) {
                      [t](const auto& lift) { return t >= lift.first - 0.02 && t <= lift.second + 0.02; });
 }
 
-class Seeds : public testing::TestWithParam<int> {};
+class Seeds : public testing::TestWithParam<std::pair<int, Scene>> {
+ protected:
+  static std::unique_ptr<Session> session() {
+    SimOptions options = seeded(static_cast<std::uint64_t>(GetParam().first));
+    options.scene = GetParam().second;
+    return session_of(options);
+  }
+};
 
 TEST_P(Seeds, TouchingPointLiesOnTheObjectWhileInContact) {
-  const auto session = session_of(seeded(static_cast<std::uint64_t>(GetParam())));
+  const auto session = Seeds::session();
   std::vector<double> errors;
   run(*session, [&](const Sample& s) {
     const Interval* trace = interval_at(*session, s.time_s, "trace");
@@ -58,7 +65,7 @@ TEST_P(Seeds, TouchingPointLiesOnTheObjectWhileInContact) {
 }
 
 TEST_P(Seeds, StanceFeetDoNotSlide) {
-  const auto session = session_of(seeded(static_cast<std::uint64_t>(GetParam())));
+  const auto session = Seeds::session();
   std::array<std::size_t, 2> plant{~std::size_t{0}, ~std::size_t{0}};
   std::array<Vec3, 2> put;
   double worst = 0.0;
@@ -80,7 +87,7 @@ TEST_P(Seeds, StanceFeetDoNotSlide) {
 }
 
 TEST_P(Seeds, NobodyWalksThroughWallsOrFurniture) {
-  const auto session = session_of(seeded(static_cast<std::uint64_t>(GetParam())));
+  const auto session = Seeds::session();
   double least = 1e9;
   run(*session, [&](const Sample& s) {
     const Vec3 pelvis = to_building(*session, s.truth[kPelvis].p);
@@ -90,7 +97,7 @@ TEST_P(Seeds, NobodyWalksThroughWallsOrFurniture) {
 }
 
 TEST_P(Seeds, LeftHandIsOnTheHipAndTheRightOneOnItsWayBeforeContact) {
-  const auto session = session_of(seeded(static_cast<std::uint64_t>(GetParam())));
+  const auto session = Seeds::session();
   std::vector<double> before(session->script().score.intervals.size(), 1e9);
   double farthest = 0.0, widest = 0.0;
   run(*session, [&](const Sample& s) {
@@ -112,7 +119,12 @@ TEST_P(Seeds, LeftHandIsOnTheHipAndTheRightOneOnItsWayBeforeContact) {
   EXPECT_GT(before[before.size() / 10], 0.02) << "the right hand should still be on its way when the gesture begins";
 }
 
-INSTANTIATE_TEST_SUITE_P(Sim, Seeds, testing::Values(1, 5, 8, 13));
+INSTANTIATE_TEST_SUITE_P(Sim, Seeds,
+                         testing::Values(std::pair(1, Scene::Auto), std::pair(5, Scene::Auto),
+                                         std::pair(8, Scene::Auto), std::pair(13, Scene::Auto),
+                                         std::pair(3, Scene::TwinTables), std::pair(3, Scene::ChairRow),
+                                         std::pair(3, Scene::TwinScreens), std::pair(3, Scene::ThinWall),
+                                         std::pair(3, Scene::ObliqueWall)));
 
 TEST(SimWearer, EverySeedGivesAPlausibleSession) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

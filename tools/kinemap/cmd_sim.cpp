@@ -8,6 +8,7 @@
 #include "tools/kinemap/stop_signal.hpp"
 #include "tools/kinemap/text_table.hpp"
 #include "tools/kinemap/udp_sender.hpp"
+#include "tools/sim/scene.hpp"
 #include "tools/sim/simulate.hpp"
 
 namespace kinemap::cli {
@@ -18,6 +19,7 @@ struct Options {
   std::string drift = "default";
   std::string format = "pcap";
   std::string shell = "auto";
+  std::string scene = "auto";
   std::string out;
   std::string udp;
   std::string truth;
@@ -33,6 +35,7 @@ struct Options {
 sim::SimOptions sim_options(const Options& options) {
   sim::SimOptions sim = options.sim;
   sim.drift = *sim::severity_from(options.drift);
+  sim.scene = *sim::scene_from(options.scene);
   sim.format = options.format == "mvnx" ? sim::Format::Mvnx : sim::Format::Pcap;
   sim.shell = options.shell == "rectangle" ? sim::Shell::Rectangle
               : options.shell == "l"       ? sim::Shell::LShape
@@ -143,6 +146,9 @@ void add_what(CLI::App& command, Options& options) {
   command.add_option("--shape", options.shell, "Shape of rooms: auto, rectangle or l")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "rectangle", "l"}));
+  command.add_option("--scene", options.scene, "What is hard to tell apart in it; auto: now and then something")
+      ->capture_default_str()
+      ->check(CLI::IsMember(sim::scene_names()));
   command.add_option("--room-size", options.room_size, "Length and width of every room, m")
       ->expected(2)
       ->check(CLI::Range(3.0, 9.0));
@@ -153,9 +159,10 @@ void add_what(CLI::App& command, Options& options) {
       ->capture_default_str()
       ->check(CLI::Range(0.5, 2.0));
   command
-      .add_option("--closure-spacing", options.closure_spacing_m, "Metres walked between touches of something known")
+      .add_option("--closure-spacing", options.closure_spacing_m,
+                  "Metres walked at least between touches of something known")
       ->check(CLI::Range(5.0, 30.0));
-  command.add_option("--sloppiness", options.sim.sloppiness, "0 careful to 1 careless touch")
+  command.add_option("--sloppiness", options.sim.sloppiness, "0 careful to 1 careless tracing")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--packet-loss", options.packet_loss, "Part of the samples lost")->check(CLI::Range(0.0, 0.9));

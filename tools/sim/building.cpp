@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sim/building.hpp"
 
+#include "tools/sim/scene.hpp"
+
 namespace kinemap::sim {
 
 namespace {
 
-/// A shell before it is joined to others: a rectangle, perhaps with one of its upper corners (large y) missing.
+constexpr double kUsualPartition = 0.12;  ///< between the two faces of a wall that parts two rooms, m
+
+/// A shell before it is joined to others: a rectangle, perhaps with one of its upper corners (large y) missing or with
+/// its upper side oblique.
 struct ShellPlan {
   double x0 = 0.0, y0 = 0.0, width = 0.0, depth = 0.0;
   double notch_width = 0.0, notch_depth = 0.0;  ///< 0: plain rectangle
   bool notch_right = false;
+  double slope = 0.0;  ///< of the upper side: rad, rising from the notch's side
 
   [[nodiscard]] std::vector<Vec2> polygon() const {
     const double x1 = x0 + width, y1 = y0 + depth;
+    if (slope > 0.0) return {{x0, y0}, {x1, y0}, {x1, side_top(true)}, {x0, side_top(false)}};
     if (notch_width <= 0.0) return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
     const double y_cut = y1 - notch_depth;
     if (notch_right) {
@@ -22,7 +29,8 @@ struct ShellPlan {
   }
   /// Upper end of the side at x0 + width (right) or x0 (left).
   [[nodiscard]] double side_top(bool right) const {
-    return y0 + depth - (notch_width > 0.0 && notch_right == right ? notch_depth : 0.0);
+    if (notch_right != right) return y0 + depth;
+    return y0 + depth - (slope > 0.0 ? width * std::tan(slope) : notch_width > 0.0 ? notch_depth : 0.0);
   }
 };
 
@@ -58,17 +66,17 @@ void add_faces(Building& building, int room) {
   }
 }
 
-/// Opens both faces of the partition at x = `x_left` | `x_left` + thickness around height `y` of the plan.
-void open_doorway(Building& building, int left, double x_left, double y) {
+/// Opens both faces of the partition at x = `x_left` | `x_left` + `thickness` around height `y` of the plan.
+void open_doorway(Building& building, int left, double x_left, double thickness, double y) {
   for (auto& wall : building.walls) {
     const bool mine = (wall.room == left && std::abs(wall.a.x() - x_left) < 1e-9) ||
-                      (wall.room == left + 1 && std::abs(wall.a.x() - x_left - kPartitionThickness) < 1e-9);
+                      (wall.room == left + 1 && std::abs(wall.a.x() - x_left - thickness) < 1e-9);
     if (!mine || std::abs(wall.a.x() - wall.b.x()) > 1e-9) continue;
     const double u = (Vec2(wall.a.x(), y) - wall.a).dot(wall.along());
     if (u < 0.0 || u > wall.length()) continue;
     wall.doorway = std::pair(u - kDoorwayWidth / 2, u + kDoorwayWidth / 2);
   }
-  building.doorways.push_back({left, left + 1, {x_left + kPartitionThickness / 2, y}, 0.0});
+  building.doorways.push_back({left, left + 1, {x_left + thickness / 2, y}, 0.0, thickness});
 }
 
 void build_shells(Building& building, const SimOptions& options, Random& random) {
@@ -78,13 +86,19 @@ void build_shells(Building& building, const SimOptions& options, Random& random)
   const int l_room = options.shell == Shell::Auto     ? (random.chance(0.35) ? random.integer(0, count - 1) : -1)
                      : options.shell == Shell::LShape ? random.integer(0, count - 1)
                                                       : -1;
+  const double thickness = building.scene == Scene::ThinWall ? random.uniform(0.10, 0.20) : kUsualPartition;
   std::vector<ShellPlan> plans;
   for (int i = 0; i < count; ++i) {
     ShellPlan plan = draw_shell(options, count, i == l_room, random);
     if (i > 0) {
       const auto& last = plans.back();
-      plan.x0 = last.x0 + last.width + kPartitionThickness;
+      plan.x0 = last.x0 + last.width + thickness;
       plan.y0 = random.uniform(-0.8, 0.8);
+      if (building.scene == Scene::Flat) plan.y0 = last.y0, plan.depth = last.depth;
+    }
+    if (building.scene == Scene::ObliqueWall) {
+      plan.slope = std::min(radians(random.uniform(20.0, 40.0)), std::atan((plan.depth - 2.4) / plan.width));
+      plan.notch_right = random.chance(0.5);
     }
     plans.push_back(plan);
     building.rooms.push_back({plan.polygon()});
@@ -94,7 +108,7 @@ void build_shells(Building& building, const SimOptions& options, Random& random)
     const auto& left = plans[static_cast<std::size_t>(i)];
     const auto& right = plans[static_cast<std::size_t>(i) + 1];
     const double low = std::max(left.y0, right.y0), high = std::min(left.side_top(true), right.side_top(false));
-    open_doorway(building, i, left.x0 + left.width, random.uniform(low + 0.75, high - 0.75));
+    open_doorway(building, i, left.x0 + left.width, thickness, random.uniform(low + 0.75, high - 0.75));
   }
 }
 
@@ -152,7 +166,7 @@ bool Building::open_floor(const Vec2& p) const {
     if (room.contains(p)) return true;
   }
   for (const auto& door : doorways) {
-    const Footprint passage{door.centre, door.heading, {kPartitionThickness / 2 + 0.01, kDoorwayWidth / 2}};
+    const Footprint passage{door.centre, door.heading, {door.thickness / 2 + 0.01, kDoorwayWidth / 2}};
     if (passage.distance(p) == 0.0) return true;
   }
   return false;
@@ -176,8 +190,9 @@ double Building::clearance(const Vec2& p) const {
 
 Building make_building(const SimOptions& options, const Reach& reach, Random& random) {
   Building building;
-  build_shells(building, options, random);
-  furnish(building, reach, random);
+  building.scene = drawn_scene(options);
+  build_shells(building, with_shell_of(building.scene, options, random), random);
+  furnish(building, building.scene, reach, random);
   int id = 1;
   for (auto& wall : building.walls) wall.id = id++;
   for (auto& table : building.tables) table.id = id++;

@@ -12,7 +12,6 @@
 
 namespace kinemap::sim {
 
-inline constexpr double kPartitionThickness = 0.12;  ///< between the two faces of a wall that parts two rooms, m
 inline constexpr double kDoorwayWidth = 0.90;
 inline constexpr double kRoomHeight = 2.5;
 
@@ -79,11 +78,13 @@ struct Room {
 struct Doorway {
   int room_a = 0, room_b = 0;
   Vec2 centre;
-  double heading = 0.0;  ///< from room_a to room_b
+  double heading = 0.0;     ///< from room_a to room_b
+  double thickness = 0.12;  ///< of the partition, m
 };
 
 /// Rooms and furniture, in the building's own frame (m, floor at z = 0).
 struct Building {
+  Scene scene = Scene::Plain;
   std::vector<Room> rooms;
   std::vector<WallFace> walls;
   std::vector<Doorway> doorways;
@@ -108,6 +109,6 @@ struct Reach {
 Building make_building(const SimOptions& options, const Reach& reach, Random& random);
 
 /// Puts tables, screens and chairs into the rooms (part of make_building).
-void furnish(Building& building, const Reach& reach, Random& random);
+void furnish(Building& building, Scene scene, const Reach& reach, Random& random);
 
 }  // namespace kinemap::sim

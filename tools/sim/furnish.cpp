@@ -3,25 +3,19 @@
 #include <functional>
 
 #include "tools/sim/building.hpp"
+#include "tools/sim/look_alikes.hpp"
 
 namespace kinemap::sim {
 
 namespace {
 
 constexpr int kTries = 400;
-constexpr double kWalkway = 0.85;  ///< free breadth around what one walks round, m
-
-/// A spot along a wall: `u` metres from its start.
-struct WallSpot {
-  const WallFace* wall = nullptr;
-  double u = 0.0;
-};
+constexpr double kWalkway = FloorSpace::kWalkway;
 
 class Furnisher {
  public:
-  Furnisher(Building& building, const Reach& reach, Random& random) : b_(building), reach_(reach), random_(random) {
-    for (const auto& door : b_.doorways) keep_free_.push_back({door.centre, door.heading, {1.0, 0.75}});
-  }
+  Furnisher(Building& building, Scene scene, const Reach& reach, Random& random)
+      : b_(building), scene_(scene), reach_(reach), random_(random), space_(building, random) {}
 
   void run() {
     const auto rooms = static_cast<int>(b_.rooms.size());
@@ -30,6 +24,8 @@ class Furnisher {
     const int small = random_.integer(1, std::min(rooms == 3 ? 2 : 3, tables)),
               chairs = random_.integer(2, rooms == 2 ? 4 : 3);
     // What needs most room goes first. The rooms take turns, so that none stays empty.
+    if (scene_ == Scene::ThinWall) keep_partition_free();
+    for (int room = 0, done = 0; room < rooms && done == 0; ++room) done = add_look_alikes(room) ? 1 : 0;
     for (int i = 0; i < tables; ++i) try_rooms(i, [this](int room) { return add_table(room); });
     for (int i = 0; i < big; ++i) try_rooms(i + 1, [this](int room) { return add_big_screen(room); });
     for (int i = 0; i < small; ++i) add_monitor();
@@ -44,45 +40,22 @@ class Furnisher {
     }
   }
 
-  /// Inside the room with every corner, and `margin` away from its walls except those that it touches (`touching`).
-  [[nodiscard]] bool inside(int room, const Footprint& f) const {
-    for (const auto& corner : f.grown(-0.02).corners()) {
-      if (!b_.rooms[static_cast<std::size_t>(room)].contains(corner)) return false;
+  bool add_look_alikes(int room) {
+    switch (scene_) {
+      case Scene::TwinTables:
+        return add_twin_tables(b_, space_, room, random_);
+      case Scene::ChairRow:
+        return add_chair_row(b_, space_, room, random_);
+      case Scene::TwinScreens:
+        return add_twin_screens(b_, space_, reach_, room, random_);
+      default:
+        return true;
     }
-    for (const auto& wall : b_.walls) {  // a reflex corner of an L-shaped room may reach into a long piece
-      if (wall.room == room && f.grown(-0.02).distance(wall.a) == 0.0) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] double gap_to_furniture(const Footprint& f) const {
-    double least = 1e9;
-    for (const auto& other : b_.obstacles) least = std::min(least, gap(f, other));
-    return least;
-  }
-  [[nodiscard]] bool keeps_free(const Footprint& f) const {
-    for (const auto& zone : keep_free_) {
-      if (gap(f, zone) <= 0.0) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] double gap_to_walls(int room, const Footprint& f, const WallFace* except) const {
-    double least = 1e9;
-    for (const auto& wall : b_.walls) {
-      if (wall.room != room || &wall == except) continue;
-      const Footprint line{(wall.a + wall.b) / 2, heading_of(wall.along()), {wall.length() / 2, 1e-4}};
-      least = std::min(least, gap(f, line));
-    }
-    return least;
   }
 
-  std::optional<WallSpot> draw_spot(int room, double half_length) {
-    std::vector<const WallFace*> faces;
-    for (const auto& wall : b_.walls) {
-      if (wall.room == room && wall.length() > 2 * half_length + 0.3) faces.push_back(&wall);
-    }
-    if (faces.empty()) return std::nullopt;
-    const auto* wall = faces[static_cast<std::size_t>(random_.integer(0, static_cast<int>(faces.size()) - 1))];
-    return WallSpot{wall, random_.uniform(half_length, wall->length() - half_length)};
+  /// Both faces of the partition shall be touched along most of their length.
+  void keep_partition_free() {
+    for (const auto& door : b_.doorways) space_.keep_free({door.centre, door.heading, {0.9, 1.9}});
   }
 
   bool add_table(int room) {
@@ -94,36 +67,14 @@ class Furnisher {
       if (table.top.half.y() > 0.7 * table.top.half.x()) table.top.half.y() = 0.7 * table.top.half.x();
       table.top.half.y() = std::max(table.top.half.y(), 0.3);
       const bool freely = free_standing == (i < kTries / 2);  // the other way when there is no room
-      if (!(freely ? place_freely(table) : place_at_wall(table))) continue;
-      if (!keeps_free(table.top) || gap_to_furniture(table.top) < kWalkway) continue;
+      if (!(freely ? space_.place_freely(room, table.top) : space_.place_at_wall(room, table.top))) continue;
+      if (!space_.keeps_free(table.top) || space_.gap_to_furniture(table.top) < kWalkway) continue;
       table.height = random_.uniform(0.70, 0.78);
       b_.tables.push_back(table);
       b_.obstacles.push_back(table.top);
       return true;
     }
     return false;
-  }
-
-  bool place_at_wall(Table& table) {
-    const auto spot = draw_spot(table.room, table.top.half.x());
-    if (!spot) return false;
-    double u = spot->u;
-    const bool corner = random_.chance(0.2);
-    if (corner) u = random_.chance(0.5) ? table.top.half.x() + 0.01 : spot->wall->length() - table.top.half.x() - 0.01;
-    table.top.heading = heading_of(spot->wall->along());
-    table.top.centre = spot->wall->a + spot->wall->along() * u + spot->wall->inward() * (table.top.half.y() + 0.01);
-    if (!inside(table.room, table.top)) return false;
-    return corner || gap_to_walls(table.room, table.top, spot->wall) > kWalkway;
-  }
-
-  bool place_freely(Table& table) {
-    const auto& polygon = b_.rooms[static_cast<std::size_t>(table.room)].polygon;
-    Vec2 low = polygon[0], high = polygon[0];
-    for (const auto& p : polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    table.top.centre = {random_.uniform(low.x(), high.x()), random_.uniform(low.y(), high.y())};
-    table.top.heading = random_.chance(0.5) ? 0.0 : kPi / 2;
-    if (random_.chance(0.2)) table.top.heading += random_.uniform(-0.4, 0.4);
-    return inside(table.room, table.top) && gap_to_walls(table.room, table.top, nullptr) > kWalkway + 0.1;
   }
 
   bool add_big_screen(int room) {
@@ -133,10 +84,14 @@ class Furnisher {
       screen.big = true;
       screen.width = random_.uniform(1.2, i < kTries / 2 ? 2.0 : 1.4);
       screen.height = std::min(random_.uniform(0.7, 1.2), 0.75 * screen.width);
-      const auto spot = draw_spot(room, screen.width / 2 + 0.15);
+      // Beside a flush screen there is wall to be touched.
+      const auto spot = space_.draw_spot(room, screen.width / 2 + (scene_ == Scene::FlushScreen ? 0.6 : 0.15));
       if (!spot || spot->wall->doorway) continue;
       const bool stand = random_.chance(0.35);
-      const double offset = stand ? random_.uniform(0.35, 0.6) : random_.uniform(0.04, 0.09);
+      const bool flush = scene_ == Scene::FlushScreen;
+      const double offset = flush   ? random_.uniform(0.015, 0.035)
+                            : stand ? random_.uniform(0.35, 0.6)
+                                    : random_.uniform(0.04, 0.09);
       const Vec2 front = spot->wall->a + spot->wall->along() * spot->u + spot->wall->inward() * offset;
       screen.heading = heading_of(spot->wall->inward());
       // Both edges must be in reach, without a ladder and without kneeling.
@@ -146,12 +101,13 @@ class Furnisher {
       const Vec2 in = spot->wall->inward();
       const Footprint body{front - in * (offset / 2), screen.heading, {offset / 2, screen.width / 2}};
       const Footprint before{front + in * 0.5, screen.heading, {0.5, screen.width / 2 + 0.25}};
-      if (!inside(room, body) || !inside(room, before) || !keeps_free(body) || gap_to_furniture(body) < kWalkway)
+      if (!space_.inside(room, body) || !space_.inside(room, before) || !space_.keeps_free(body) ||
+          space_.gap_to_furniture(body) < kWalkway)
         continue;
-      if (gap_to_furniture(before) < 0.05) continue;
+      if (space_.gap_to_furniture(before) < 0.05) continue;
       b_.screens.push_back(screen);
       b_.obstacles.push_back(body);
-      keep_free_.push_back(before);
+      space_.keep_free(before);
       return true;
     }
     return false;
@@ -194,7 +150,7 @@ class Furnisher {
 
   bool add_chair(int room) {
     for (int i = 0; i < kTries; ++i) {
-      const auto spot = draw_spot(room, 0.3);
+      const auto spot = space_.draw_spot(room, 0.3);
       if (!spot) return false;
       Chair chair;
       chair.room = room;
@@ -209,25 +165,31 @@ class Furnisher {
       chair.height = random_.uniform(0.42, 0.50);
       const Footprint body{chair.seat, chair.heading, {0.22, 0.22}};
       const Footprint feet{chair.seat + direction(chair.heading) * 0.55, chair.heading, {0.3, 0.25}};
-      if (!inside(room, body) || !inside(room, feet) || !keeps_free(body) || gap_to_furniture(body) < 0.9) continue;
-      if (gap_to_walls(room, body, at_wall ? spot->wall : nullptr) < 0.6 || gap_to_furniture(feet) < 0.25) continue;
-      if (gap_to_walls(room, feet, nullptr) < 0.15) continue;
+      if (!space_.inside(room, body) || !space_.inside(room, feet) || !space_.keeps_free(body) ||
+          space_.gap_to_furniture(body) < 0.9)
+        continue;
+      if (space_.gap_to_walls(room, body, at_wall ? spot->wall : nullptr) < 0.6 || space_.gap_to_furniture(feet) < 0.25)
+        continue;
+      if (space_.gap_to_walls(room, feet, nullptr) < 0.15) continue;
       b_.chairs.push_back(chair);
       b_.obstacles.push_back(body);
-      keep_free_.push_back(feet);
+      space_.keep_free(feet);
       return true;
     }
     return false;
   }
 
   Building& b_;
+  Scene scene_;
   Reach reach_;
   Random& random_;
-  std::vector<Footprint> keep_free_;
+  FloorSpace space_;
 };
 
 }  // namespace
 
-void furnish(Building& building, const Reach& reach, Random& random) { Furnisher(building, reach, random).run(); }
+void furnish(Building& building, Scene scene, const Reach& reach, Random& random) {
+  Furnisher(building, scene, reach, random).run();
+}
 
 }  // namespace kinemap::sim

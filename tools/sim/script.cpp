@@ -117,6 +117,10 @@ class Tour {
         if (round == 0 && composer_.now() > 0.82 * kLongest_s) continue;  // time for a second round must be left
         const bool first_seat = stop.kind == Stop::Kind::Chair && !sat_;
         if (composer_.now() > kLongest_s - 28.0 || (!random_.chance(wanted) && !first_seat)) continue;
+        if (!may_touch(stop.id)) {
+          walk_past(stop);
+          continue;
+        }
         if (round == 0) close_loop(stop);
         maybe_distract();
         visit(stop, false);
@@ -149,6 +153,16 @@ class Tour {
     next_closure_ = closure_spacing();
   }
 
+  /// With a spacing asked for, what is known is touched no sooner.
+  [[nodiscard]] bool may_touch(int id) const {
+    return !options_.closure_spacing_m || touched_.count(id) == 0 ||
+           composer_.walked() - last_closure_ >= next_closure_;
+  }
+  void walk_past(const Stop& stop) {
+    const Vec2 middle = building_.rooms[static_cast<std::size_t>(stop.room)].middle();
+    composer_.walk_to(composer_.planner().pushed_clear(stop.place, middle, 0.6), std::nullopt);
+  }
+
   void maybe_distract() {
     if (!options_.distractors || composer_.now() < next_distractor_s_) return;
     distract(composer_);
@@ -171,11 +185,12 @@ class Tour {
       case Stop::Kind::Wall: {
         const WallFace& wall = building_.walls[stop.index];
         const bool at_right = ccw_[static_cast<std::size_t>(stop.room)] ? random_.chance(0.85) : random_.chance(0.4);
-        if (goes_on) {
+        if (goes_on && may_touch(wall_after(wall).id)) {
           const auto drawn = trace_wall_corner(composer_, wall, wall_after(wall), at_right);
           if (!drawn.empty()) return drawn;
         }
-        const auto extent = brief ? WallExtent::Brief : late(stop.room) ? WallExtent::Longest : WallExtent::All;
+        const bool once = late(stop.room) || options_.closure_spacing_m;  // a second stretch is a known wall
+        const auto extent = brief ? WallExtent::Brief : once ? WallExtent::Longest : WallExtent::All;
         return trace_wall(composer_, wall, at_right, extent);
       }
       case Stop::Kind::Table:
@@ -206,7 +221,8 @@ class Tour {
     double least = 3.0;
     for (const auto& s : building_.screens) {
       const double d = (s.centre - screen.centre).norm();
-      if (s.id == screen.id || s.room != screen.room || this_round_.count(s.id) != 0 || d > least) continue;
+      if (s.id == screen.id || s.room != screen.room || this_round_.count(s.id) != 0 || d > least || !may_touch(s.id))
+        continue;
       least = d, best = &s;
     }
     return best;

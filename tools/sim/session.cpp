@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/sim/session.hpp"
 
+#include "tools/sim/scene.hpp"
+
 namespace kinemap::sim {
 
 namespace {
@@ -40,7 +42,7 @@ std::optional<std::string> check(const SimOptions& o) {
   if (o.packet_loss && outside(*o.packet_loss, 0, 0.9)) return "packet loss must be 0–0.9";
   if (o.room_size && (outside((*o.room_size)[0], 3, 9) || outside((*o.room_size)[1], 3, 9)))
     return "room size must be 3–9 m each way";
-  return std::nullopt;
+  return check_scene(o);
 }
 
 std::optional<Severity> severity_from(const std::string& name) {

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/sim/scene.hpp"
+
 namespace kinemap::sim {
 
 namespace {
@@ -150,6 +152,7 @@ Json TruthWriter::json() const {
           {"version", 1},
           {"seed", session_.options().seed},
           {"drift", to_string(session_.options().drift)},
+          {"scene", to_string(session_.building().scene)},
           {"rate_hz", session_.options().rate_hz},
           {"duration_s", rounded(session_.duration_s())},
           {"wearer", wearer_json(session_)},

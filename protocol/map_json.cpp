@@ -30,7 +30,10 @@ Json sigma_json(const MapObject& object) {
   Json json = Json::object();
   if (known(sigma.position_m)) json["position"] = rounded(sigma.position_m);
   if (known(sigma.heading_rad)) json["heading"] = rounded(sigma.heading_rad);
-  if (object.size && known(sigma.size_m[0]) && known(sigma.size_m[1])) json["size"] = array_of(sigma.size_m);
+  for (const double side : sigma.size_m) {
+    if (!object.size || !known(side)) break;
+    json["size"].push_back(rounded(side));
+  }
   return json;
 }
 

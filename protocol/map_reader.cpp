@@ -40,8 +40,14 @@ ObjectSigma read_sigma(const JsonCursor& json) {
   if (json.has("position")) sigma.position_m = json.at("position").number();
   if (json.has("heading")) sigma.heading_rad = json.at("heading").number();
   if (json.has("size")) {
-    const Eigen::Vector2d size = json.at("size").vector<2>();
-    sigma.size_m = {size[0], size[1]};
+    std::size_t known = 0;
+    for (const JsonCursor& side : json.at("size").items()) {
+      if (known == sigma.size_m.size()) {
+        json.at("size").fail("expected one or two numbers");
+        break;
+      }
+      sigma.size_m[known++] = side.number();
+    }
   }
   return sigma;
 }

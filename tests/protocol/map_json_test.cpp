@@ -37,8 +37,8 @@ TEST(MapJson, HoldsWhatTheMapHolds) {
 TEST(MapJson, LeavesOutWhatIsUnknown) {
   const Json json = to_json(sample_map());
   const Json &wall = json["objects"][0], &table = json["objects"][1], &chair = json["objects"][3];
-  EXPECT_FALSE(wall["sigma"].contains("size")) << "one of the two is unknown";
-  EXPECT_TRUE(table["sigma"].contains("size"));
+  EXPECT_EQ(wall["sigma"]["size"], Json::array({0.05})) << "the height's is unknown";
+  EXPECT_EQ(table["sigma"]["size"], Json::array({0.03, 0.02}));
   EXPECT_FALSE(table.contains("height_assumed"));
   for (const char* key : {"plane", "corners", "size", "sigma"}) EXPECT_FALSE(chair.contains(key)) << key;
   EXPECT_EQ(map_text(sample_map()).find("null"), std::string::npos);

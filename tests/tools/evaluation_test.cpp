@@ -20,7 +20,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 
 TruthObject truth_object(std::uint32_t id, ObjectType type, const Pose& pose, std::array<double, 2> size) {
-  return {id, type, class_of(type, size[0]), pose, size};
+  return {id, type, class_of(type, size[0]), pose, size, std::nullopt};
 }
 
 /// The object of a map that is exactly the true one.

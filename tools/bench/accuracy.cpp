@@ -3,9 +3,10 @@
 
 #include <charconv>
 #include <filesystem>
+#include <mutex>
 #include <sstream>
 
-#include "tools/bench/temporary_directory.hpp"
+#include "tools/bench/parallel.hpp"
 #include "tools/kinemap/batch.hpp"
 #include "tools/kinemap/files.hpp"
 #include "tools/kinemap/map_files.hpp"
@@ -18,19 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that a simulated session depends on, as a directory name.
-std::string cache_key(const sim::SimOptions& sim) {
-  std::string key =
-      cli::format("seed%llu-%s-%g", static_cast<unsigned long long>(sim.seed), to_string(sim.drift), sim.rate_hz);
-  if (sim.rooms) key += cli::format("-rooms%d", *sim.rooms);
-  if (sim.rounds) key += cli::format("-rounds%d", *sim.rounds);
-  if (sim.packet_loss) key += cli::format("-loss%g", *sim.packet_loss);
-  if (sim.stature_m) key += cli::format("-stature%g", *sim.stature_m);
-  if (sim.closure_spacing_m) key += cli::format("-spacing%g", *sim.closure_spacing_m);
-  return key +
-         cli::format("-shell%d-slop%g%s", static_cast<int>(sim.shell), sim.sloppiness, sim.distractors ? "" : "-plain");
-}
-
 /// Makes the session unless it is there. truth.json is written last: where it is, the session is whole.
 std::optional<Error> simulate(sim::SimOptions sim, const std::string& directory) {
   if (fs::exists(fs::path(directory) / "truth.json")) return std::nullopt;
@@ -40,49 +28,94 @@ std::optional<Error> simulate(sim::SimOptions sim, const std::string& directory)
   return std::nullopt;
 }
 
-Result<Session> run_session(const AccuracyOptions& options, std::uint64_t seed, const std::string& cache) {
-  sim::SimOptions sim = options.sim;
-  sim.seed = seed;
-  const fs::path directory = fs::path(cache) / cache_key(sim);
-  if (auto error = simulate(sim, directory.string())) return *error;
-  const auto built = cli::build_map((directory / "session.pcap").string(), options.config);
-  if (!built) return Error{built.error()};
-  const auto text = cli::read_file((directory / "truth.json").string());
+Result<std::shared_ptr<const eval::Truth>> read_truth(const std::string& path) {
+  const auto text = cli::read_file(path);
   if (!text) return Error{text.error()};
   const auto truth = eval::truth_from_text(*text);
-  if (!truth) return Error{(directory / "truth.json").string() + ": " + truth.error()};
-  const auto evaluation = eval::evaluate(*built->map, *truth);
-  if (!evaluation) return Error{directory.string() + ": " + evaluation.error()};
-  if (options.keep) {
-    const std::string out = (fs::path(*options.keep) / ("seed" + std::to_string(seed))).string();
-    if (auto error = cli::make_output_directory(out)) return *error;
-    if (auto error = cli::write_map_files(out, *built->map, built->graph)) return *error;
+  if (!truth) return Error{path + ": " + truth.error()};
+  return std::make_shared<const eval::Truth>(*truth);
+}
+
+std::optional<Error> keep_map(const std::string& directory, const cli::BatchResult& built) {
+  if (auto error = cli::make_output_directory(directory)) return error;
+  return cli::write_map_files(directory, *built.map, built.graph);
+}
+
+/// One session with each configuration.
+Result<std::vector<Session>> run_session(const sim::SimOptions& sim, const std::vector<Config>& configs,
+                                         const fs::path& cache, const std::string& keep) {
+  const std::string name = session_name(sim);
+  const fs::path directory = cache / name;
+  if (auto error = simulate(sim, directory.string())) return *error;
+  const auto truth = read_truth((directory / "truth.json").string());
+  if (!truth) return Error{truth.error()};
+  std::vector<Session> sessions;
+  for (const Config& config : configs) {
+    const auto built = cli::build_map((directory / "session.pcap").string(), config);
+    if (!built) return Error{built.error()};
+    const auto evaluation = eval::evaluate(*built->map, **truth);
+    if (!evaluation) return Error{directory.string() + ": " + evaluation.error()};
+    if (!keep.empty())
+      if (auto error = keep_map((fs::path(keep) / name).string(), *built)) return *error;
+    sessions.push_back({sim, *evaluation, built->recording.duration_s, *truth, built->map});
   }
-  return Session{seed,
-                 *evaluation,
-                 built->recording.duration_s,
-                 built->times.total_s(),
-                 built->map->graph,
-                 built->map->unresolved.size()};
+  return sessions;
 }
 
 }  // namespace
 
-Result<std::vector<Session>> run_accuracy(const AccuracyOptions& options) {
-  std::optional<TemporaryDirectory> temporary;
-  if (options.cache.empty()) temporary.emplace();
-  const std::string cache = temporary ? temporary->path() : options.cache;
-  if (auto error = cli::make_output_directory(cache)) return *error;
-  std::vector<Session> sessions;
-  cli::ProgressBar bar("accuracy");
-  for (const std::uint64_t seed : options.seeds) {
-    bar.update(static_cast<double>(sessions.size()) / static_cast<double>(options.seeds.size()),
-               "seed " + std::to_string(seed));
-    auto session = run_session(options, seed, cache);
-    if (!session) return Error{"seed " + std::to_string(seed) + ": " + session.error()};
-    sessions.push_back(std::move(*session));
+std::string session_name(const sim::SimOptions& sim) {
+  std::string key = cli::format("seed%llu-%s-%g-speed%g", static_cast<unsigned long long>(sim.seed),
+                                to_string(sim.drift), sim.rate_hz, sim.speed);
+  if (sim.rooms) key += cli::format("-rooms%d", *sim.rooms);
+  if (sim.rounds) key += cli::format("-rounds%d", *sim.rounds);
+  if (sim.packet_loss) key += cli::format("-loss%g", *sim.packet_loss);
+  if (sim.stature_m) key += cli::format("-stature%g", *sim.stature_m);
+  if (sim.closure_spacing_m) key += cli::format("-spacing%g", *sim.closure_spacing_m);
+  return key +
+         cli::format("-shell%d-slop%g%s", static_cast<int>(sim.shell), sim.sloppiness, sim.distractors ? "" : "-plain");
+}
+
+std::vector<sim::SimOptions> sessions_of(const std::vector<std::uint64_t>& seeds, const sim::SimOptions& base) {
+  constexpr double kSloppiness[] = {0.2, 0.35, 0.5, 0.65, 0.8};
+  std::vector<sim::SimOptions> sessions;
+  for (const std::uint64_t seed : seeds) {
+    sessions.push_back(base);
+    sessions.back().seed = seed;
+    sessions.back().sloppiness = kSloppiness[seed % std::size(kSloppiness)];
   }
   return sessions;
+}
+
+Result<std::vector<std::vector<Session>>> run_sessions(const std::vector<sim::SimOptions>& sessions,
+                                                       const std::vector<Config>& configs, const RunOptions& options) {
+  const fs::path cache = options.cache;
+  if (auto error = cli::make_output_directory(cache.string())) return *error;
+
+  std::vector<std::optional<Result<std::vector<Session>>>> done(sessions.size());
+  cli::ProgressBar bar(options.label);
+  std::mutex bar_mutex;
+  std::size_t finished = 0;
+  parallel_for(sessions.size(), options.jobs, [&](std::size_t i) {
+    done[i] = run_session(sessions[i], configs, cache, options.keep);
+    const std::scoped_lock lock(bar_mutex);
+    ++finished;
+    bar.update(static_cast<double>(finished) / static_cast<double>(sessions.size()),
+               cli::format("%zu of %zu sessions", finished, sessions.size()));
+  });
+
+  std::vector<std::vector<Session>> result(configs.size());
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    if (!*done[i]) return Error{"seed " + std::to_string(sessions[i].seed) + ": " + done[i]->error()};
+    for (std::size_t c = 0; c < configs.size(); ++c) result[c].push_back(std::move((**done[i])[c]));
+  }
+  return result;
+}
+
+eval::Report report_of(const std::vector<Session>& sessions) {
+  std::vector<eval::Evaluation> evaluations;
+  for (const Session& session : sessions) evaluations.push_back(session.evaluation);
+  return eval::summarise(evaluations);
 }
 
 std::optional<std::vector<std::uint64_t>> parse_seeds(const std::string& text) {

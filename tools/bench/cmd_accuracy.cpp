@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/json_text.hpp"
-#include "tools/bench/accuracy.hpp"
 #include "tools/bench/commands.hpp"
-#include "tools/kinemap/files.hpp"
+#include "tools/bench/document.hpp"
+#include "tools/bench/tables.hpp"
 #include "tools/kinemap/text_table.hpp"
 
 namespace kinemap::bench {
@@ -18,110 +18,87 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string seeds = "1-9";
   std::vector<std::string> drifts = {"default"};
-  std::string cache, keep, markdown, config;
-  int rooms = 0;
-  bool json = false;
+  std::string cache, keep, markdown, config, recordings;
+  double closure_spacing_m = 0.0;
+  int rooms = 0, jobs = 0;
+  bool ablation = false, json = false;
 };
 
-std::string percent(const std::vector<double>& values) {
-  return values.empty() ? "–" : format("%.1f", eval::spread_of(values).mean);
+/// The command that gives the same document; where things are kept does not matter.
+std::string command_of(const Options& options) {
+  std::string drifts;
+  for (const std::string& drift : options.drifts) drifts += (drifts.empty() ? "" : ",") + drift;
+  std::string command = "bench accuracy --seeds " + options.seeds + " --drift " + drifts;
+  if (options.rooms) command += format(" --rooms %d", options.rooms);
+  if (options.ablation) command += " --ablation";
+  if (options.closure_spacing_m > 0.0) command += format(" --closure-spacing %g", options.closure_spacing_m);
+  if (!options.recordings.empty()) command += " --recordings DIR";
+  if (!options.config.empty()) command += " --config FILE";
+  return command + " --markdown docs/accuracy.md";
 }
 
-/// One line for each seed: mean edge errors by class, found of true, false and duplicate objects, both RMSE.
-std::string session_rows(const std::vector<Session>& sessions) {
-  std::string text =
-      "| seed | tables % | big % | small % | walls % | chairs m | found | false | double | open loop m | optimised m | "
-      "closures |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Session& session : sessions) {
-    std::array<std::vector<double>, eval::kClassCount> mape;
-    std::vector<double> chairs;
-    for (const eval::Match& match : session.evaluation.matches) {
-      mape[static_cast<std::size_t>(match.klass)].push_back(match.mape_percent());
-      if (match.klass == eval::Class::Chair) chairs.push_back(match.level_error_m);
-    }
-    std::size_t truth = 0, found = 0;
-    for (const eval::ClassCounts& counts : session.evaluation.counts) {
-      truth += counts.truth;
-      found += counts.found;
-    }
-    text += format("| %llu |", static_cast<unsigned long long>(session.seed));
-    for (std::size_t c = 0; c + 1 < eval::kClassCount; ++c) text += " " + percent(mape[c]) + " |";
-    text += (chairs.empty() ? std::string(" – |") : format(" %.2f |", eval::spread_of(chairs).mean));
-    text += format(" %zu / %zu | %zu | %zu | %.3f | %.3f | %zu (−%zu) |\n", found, truth,
-                   session.evaluation.spurious.size(), session.evaluation.duplicates.size(),
-                   session.evaluation.rmse_open_loop_m, session.evaluation.rmse_optimised_m,
-                   session.graph.loop_closures, session.graph.loop_closures_revoked);
+std::string tables(const Study& study) {
+  std::string text = paper_table(study.columns) + '\n';
+  for (const Column& column : study.columns) {
+    const eval::Report report = report_of(column.sessions);
+    text += "## Drift: " + column.drift + "\n\n" + eval::to_markdown(report) + '\n' +
+            eval::association_markdown(report) + '\n' + eval::consistency_markdown(report) + '\n' +
+            session_table(column.sessions) + '\n';
   }
-  return text;
-}
-
-eval::Report report_of(const std::vector<Session>& sessions) {
-  std::vector<eval::Evaluation> evaluations;
-  for (const Session& session : sessions) evaluations.push_back(session.evaluation);
-  return eval::summarise(evaluations);
-}
-
-std::string markdown(const std::string& drift, const std::vector<Session>& sessions) {
-  std::size_t better = 0;
-  for (const Session& session : sessions)
-    better += session.evaluation.rmse_optimised_m < session.evaluation.rmse_open_loop_m ? 1 : 0;
-  const eval::Report report = report_of(sessions);
-  return "## Drift: " + drift + "\n\n" + eval::to_markdown(report) + '\n' + eval::association_markdown(report) + '\n' +
-         eval::consistency_markdown(report) + '\n' +
-         format("The optimised trajectory is better than the open-loop one in %zu of %zu sessions.\n\n", better,
-                sessions.size()) +
-         session_rows(sessions) + '\n';
+  text += scale_table(study.columns) + '\n';
+  if (!study.ablation.empty()) text += ablation_table(study.columns[study.ablated], study.ablation) + '\n';
+  if (!study.sparse.empty()) text += sparse_text(study.sparse) + '\n';
+  return text + nothing_text(study);
 }
 
 Json json_of(const std::vector<Session>& sessions) {
   Json json = eval::to_json(report_of(sessions));
   for (const Session& session : sessions) {
-    Json row = {{"seed", session.seed},
+    Json row = {{"seed", session.sim.seed},
+                {"sloppiness", session.sim.sloppiness},
                 {"duration_s", session.duration_s},
-                {"build_s", session.build_s},
-                {"loop_closures", session.graph.loop_closures},
-                {"loop_closures_revoked", session.graph.loop_closures_revoked},
-                {"unresolved", session.unresolved}};
+                {"loop_closures", session.map->graph.loop_closures},
+                {"loop_closures_revoked", session.map->graph.loop_closures_revoked},
+                {"unresolved", session.map->unresolved.size()}};
     row.update(eval::to_json(session.evaluation));
     json["seeds"].push_back(std::move(row));
   }
   return json;
 }
 
+Json json_of(const Study& study) {
+  Json json;
+  for (const Column& column : study.columns) json[column.drift] = json_of(column.sessions);
+  for (const LeverRuns& runs : study.ablation)
+    json["ablation"][runs.lever.name] = eval::to_json(report_of(runs.sessions));
+  if (!study.sparse.empty()) json["few_closures"] = json_of(study.sparse);
+  for (const QuietRecording& recording : study.quiet) json["recordings"][recording.name] = recording.objects;
+  return json;
+}
+
 int accuracy(const Options& options) {
-  AccuracyOptions run;
+  StudyOptions study;
   const auto seeds = parse_seeds(options.seeds);
   if (!seeds)
     return fail("accuracy", "--seeds \"" + options.seeds + "\": expected a list such as 1-9 or 1,4,7-12", cli::kUsage);
-  run.seeds = *seeds;
-  run.cache = options.cache;
-  if (options.rooms) run.sim.rooms = options.rooms;
+  study.seeds = *seeds;
+  study.drifts = options.drifts;
+  if (options.rooms) study.sim.rooms = options.rooms;
   if (!options.config.empty()) {
     auto config = config_from_file(options.config);
     if (!config) return fail("accuracy", config.error(), cli::kUsage);
-    run.config = *config;
+    study.config = *config;
   }
-  std::string text;
-  Json json;
-  for (const std::string& drift : options.drifts) {
-    run.sim.drift = *sim::severity_from(drift);
-    if (!options.keep.empty()) run.keep = options.drifts.size() > 1 ? options.keep + "/" + drift : options.keep;
-    const auto sessions = run_accuracy(run);
-    if (!sessions) return fail("accuracy", sessions.error());
-    text += markdown(drift, *sessions);
-    json[drift] = json_of(*sessions);
-  }
-  if (!options.markdown.empty()) {
-    const std::string head =
-        "# Accuracy\n\nMade by `bench accuracy --seeds " + options.seeds +
-        "`: simulated wearers, built by the same pipeline as live, against the simulator's truth. Edge "
-        "error: mean absolute percentage error of the edge lengths of an object (walls: length only), mean ± "
-        "standard deviation over objects. Position and heading: after aligning the trajectories by heading "
-        "and translation; walls across the wall. tools/kinemap/evaluation.hpp has the definitions.\n\n";
-    if (auto error = cli::write_file(options.markdown, head + text)) return fail("accuracy", error->message);
-  }
-  return print("accuracy", options.json ? pretty_text(json) : text);
+  study.ablation = options.ablation;
+  study.sparse_spacing_m = options.closure_spacing_m;
+  study.recordings = options.recordings;
+  study.run = {.cache = options.cache, .keep = options.keep, .jobs = options.jobs, .label = ""};
+  const auto result = run_study(study);
+  if (!result) return fail("accuracy", result.error());
+  if (!options.markdown.empty())
+    if (auto error = write_document(options.markdown, *result, command_of(options)))
+      return fail("accuracy", error->message);
+  return print("accuracy", options.json ? pretty_text(json_of(*result)) : tables(*result));
 }
 
 }  // namespace
@@ -131,7 +108,8 @@ void add_accuracy(CLI::App& app, cli::Run& run) {
   CLI::App* command = cli::add_command(
       app, run, "accuracy", "Simulate, build and evaluate many sessions: the paper's Table I and figure 6",
       "  bench accuracy --seeds 1-9\n"
-      "  bench accuracy --seeds 1-20 --drift good,default,bad --cache /tmp/sessions --markdown docs/accuracy.md\n"
+      "  bench accuracy --seeds 1-40 --drift good,default,bad --ablation --closure-spacing 30 --recordings DIR\n"
+      "                 --markdown docs/accuracy.md\n"
       "  bench accuracy --seeds 3 --keep out --json\n",
       options, accuracy);
   command->add_option("--seeds", options->seeds, "Which sessions")->capture_default_str();
@@ -142,12 +120,30 @@ void add_accuracy(CLI::App& app, cli::Run& run) {
   command->add_option("--rooms", options->rooms, "Number of rooms; default: drawn from the seed")
       ->check(CLI::Range(1, 3));
   command->add_option("--config", options->config, "Configuration as for kinemapd")->type_name("FILE");
+  command->add_flag("--ablation", options->ablation,
+                    "Also build the default column's sessions with one part of the estimator off at a time");
+  command
+      ->add_option("--closure-spacing", options->closure_spacing_m,
+                   "Also run the seeds with something known touched only every so many metres: is the map still right?")
+      ->check(CLI::Range(5.0, 100.0))
+      ->type_name("M");
+  command
+      ->add_option("--recordings", options->recordings,
+                   "Also build the recordings there, in which nothing is drawn and nobody sits")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR");
+  command->add_option("--jobs", options->jobs, "Sessions at the same time; default: one for each core")
+      ->check(CLI::Range(1, 256));
   command
       ->add_option("--cache", options->cache,
                    "Keep the simulated sessions there and use them again; clear it when the simulator changes")
       ->type_name("DIR");
-  command->add_option("--keep", options->keep, "Keep each map in DIR/seedN")->type_name("DIR");
-  command->add_option("--markdown", options->markdown, "Also write the tables into a file")->type_name("FILE");
+  command->add_option("--keep", options->keep, "Keep each map there, in a directory of the session's name")
+      ->type_name("DIR");
+  command
+      ->add_option("--markdown", options->markdown,
+                   "Also write a document with pictures; they go into the directory of its name beside it")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "Print everything as JSON, with all matches of each seed");
 }
 

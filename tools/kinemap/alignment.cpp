@@ -36,6 +36,19 @@ double rmse(const Pose& T_truth_map, std::span<const Eigen::Vector3d> p_map, std
   return std::sqrt(sum / static_cast<double>(p_map.size()));
 }
 
+std::optional<double> scale_between(std::span<const Eigen::Vector3d> p_map, std::span<const Eigen::Vector3d> p_truth) {
+  const auto extent = [](std::span<const Eigen::Vector3d> points) {
+    const Eigen::Vector3d centre = mean(points);
+    double sum = 0.0;
+    for (const Eigen::Vector3d& p : points) sum += (p - centre).head<2>().squaredNorm();
+    return sum;
+  };
+  if (p_map.size() != p_truth.size() || p_map.empty()) return std::nullopt;
+  const double map = extent(p_map), truth = extent(p_truth);
+  if (map < 1e-12 || truth < 1e-12) return std::nullopt;
+  return std::sqrt(truth / map);
+}
+
 Pose align_at(const Pose& T_map_pelvis, const Pose& T_truth_pelvis) {
   const double turn = heading_of(T_truth_pelvis.q) - heading_of(T_map_pelvis.q);
   Pose T_truth_map = level_pose(Eigen::Vector3d::Zero(), turn);

@@ -19,6 +19,11 @@ std::optional<Pose> align(std::span<const Eigen::Vector3d> p_map, std::span<cons
 /// Root mean square of |T_truth_map · p_map − p_truth|, m.
 double rmse(const Pose& T_truth_map, std::span<const Eigen::Vector3d> p_map, std::span<const Eigen::Vector3d> p_truth);
 
+/// True over estimated extent of the trajectory in the plane of the floor: the root of the ratio of the summed squared
+/// distances from the mean; nullopt when all points coincide. No loop closure sees it: a closed loop scales to a closed
+/// loop.
+std::optional<double> scale_between(std::span<const Eigen::Vector3d> p_map, std::span<const Eigen::Vector3d> p_truth);
+
 /// The heading and translation `T_truth_map` that bring one pose onto its true one.
 Pose align_at(const Pose& T_map_pelvis, const Pose& T_truth_pelvis);
 

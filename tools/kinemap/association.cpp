@@ -58,6 +58,7 @@ AssociationCheck check_association(const std::vector<MapObject>& objects, const 
       check.phantom.push_back(object.id);
       continue;
     }
+    check.owners.emplace(object.id, *owner);
     if (!owned.emplace(*owner, object.id).second) check.split.push_back(object.id);
     if (lies_on && lies_on != owner) check.misplaced.push_back(object.id);
     for (std::size_t i = 0; i < touched.size(); ++i)

@@ -23,7 +23,8 @@ struct WrongVisit {
 };
 
 struct AssociationCheck {
-  std::size_t visits = 0;  ///< of all objects of the map
+  std::size_t visits = 0;                         ///< of all objects of the map
+  std::map<std::uint32_t, std::uint32_t> owners;  ///< map id → id of what most of its visits were to
   std::vector<WrongVisit> wrong;
   std::vector<std::uint32_t> split;      ///< map ids of second objects for one that is there: closures that were missed
   std::vector<std::uint32_t> phantom;    ///< map ids of objects that nobody ever touched

@@ -32,15 +32,18 @@ std::optional<Error> compare_trajectory(const MapSnapshot& map, const Truth& tru
                  std::to_string(map.trajectory.size()) + " poses lie within the truth's time; is it the same session?"};
   result.poses = real.size();
   result.T_truth_map = *T_truth_map;
+  result.scale = scale_between(optimised, real).value_or(1.0);
   result.rmse_optimised_m = rmse(*T_truth_map, optimised, real);
   result.rmse_open_loop_m = rmse(*T_truth_odom, odometry, real);
   return std::nullopt;
 }
 
 Match match_of(const TruthObject& truth, const MapObject& object, const Shape& real, const Shape& estimate) {
-  Match match{truth.id, object.id, truth.klass, {}, 0.0, 0.0, 0.0, {}};
-  for (std::size_t i = 0; i < edge_count(truth.type); ++i)
+  Match match{truth.id, object.id, truth.klass, {}, {}, 0.0, 0.0, 0.0, {}};
+  for (std::size_t i = 0; i < edge_count(truth.type); ++i) {
+    match.edges_m.push_back(estimate.size[i]);
     match.edge_errors_percent.push_back(100.0 * std::abs(estimate.size[i] - real.size[i]) / real.size[i]);
+  }
   match.level_error_m = level_error(real, estimate);
   match.height_error_m = estimate.centre.z() - real.centre.z();
   match.heading_error_rad = heading_error(real, estimate);
@@ -109,6 +112,7 @@ Result<Evaluation> evaluate(const MapSnapshot& map, const Truth& truth) {
   std::map<std::uint32_t, std::uint32_t> truth_of;
   for (const Match& match : result.matches) truth_of[match.object_id] = match.truth_id;
   result.association = check_association(map.objects, truth.visits, truth_of);
+  result.topology = check_topology(map, truth, result.association);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "protocol/wire/result.hpp"
 #include "tools/kinemap/association.hpp"
 #include "tools/kinemap/consistency.hpp"
+#include "tools/kinemap/topology.hpp"
 #include "tools/kinemap/truth.hpp"
 
 /// How good a map is against the truth, by the measures of the paper (section VI). Uses no code of the estimator, only
@@ -30,6 +31,7 @@ struct Match {
   std::uint32_t truth_id = 0;
   std::uint32_t object_id = 0;
   Class klass = Class::Wall;
+  std::vector<double> edges_m;  ///< as the map has them, those that are judged
   std::vector<double>
       edge_errors_percent;  ///< |estimate − truth| / truth of each edge; a wall's length only (its height is assumed)
   double level_error_m = 0.0;      ///< centre, in the plane of the floor, after the alignment; walls: across the wall
@@ -56,9 +58,11 @@ struct Evaluation {
   std::size_t poses = 0;
   double rmse_open_loop_m = 0.0;  ///< the suit's own key poses, after their own alignment
   double rmse_optimised_m = 0.0;
+  double scale = 1.0;  ///< true over optimised extent of the trajectory; see scale_between
   Pose T_truth_map;    ///< least squares over the trajectory
   Pose T_truth_start;  ///< the map brought onto the truth at its first pose, where its sigmas are zero
   AssociationCheck association;
+  TopologyCheck topology;
 };
 
 /// Compares. Needs at least two trajectory poses inside the truth's time; else an Error.
@@ -77,6 +81,7 @@ struct Report {
   std::array<PerClass, kClassCount> classes;
   ClassCounts total;
   AssociationCounts association;
+  std::size_t topology_right = 0;  ///< sessions
   Spread rmse_open_loop_m, rmse_optimised_m;
 };
 Report summarise(const std::vector<Evaluation>& sessions);

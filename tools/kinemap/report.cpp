@@ -137,6 +137,7 @@ Report summarise(const std::vector<Evaluation>& sessions) {
       report.classes[c].normalised.add(match.normalised);
     }
     report.association.add(session.association);
+    report.topology_right += session.topology.right() ? 1 : 0;
     open_loop.push_back(session.rmse_open_loop_m);
     optimised.push_back(session.rmse_optimised_m);
   }
@@ -167,6 +168,7 @@ Json to_json(const Report& report) {
                          {"split", association.split},
                          {"phantom", association.phantom},
                          {"misplaced", association.misplaced}};
+  json["topology_right"] = report.topology_right;
   json["trajectory"] = {{"rmse_open_loop_m", spread_json(report.rmse_open_loop_m)},
                         {"rmse_optimised_m", spread_json(report.rmse_optimised_m)}};
   return json;
@@ -176,6 +178,7 @@ Json to_json(const Evaluation& evaluation) {
   Json json = {{"poses", evaluation.poses},
                {"rmse_open_loop_m", rounded(evaluation.rmse_open_loop_m)},
                {"rmse_optimised_m", rounded(evaluation.rmse_optimised_m)},
+               {"scale", rounded(evaluation.scale)},
                {"matches", Json::array()}};
   for (const Match& match : evaluation.matches) {
     Json row = {{"truth_id", match.truth_id}, {"object_id", match.object_id}, {"class", to_string(match.klass)}};
@@ -190,6 +193,10 @@ Json to_json(const Evaluation& evaluation) {
   json["spurious"] = evaluation.spurious;
   json["duplicates"] = evaluation.duplicates;
   json["association"] = to_json(evaluation.association);
+  json["topology"] = {{"rooms", evaluation.topology.rooms},
+                      {"rooms_found", evaluation.topology.rooms_found},
+                      {"right", evaluation.topology.right()},
+                      {"wrong", evaluation.topology.wrong}};
   return json;
 }
 

@@ -20,6 +20,7 @@ TruthObject read_object(const JsonCursor& json) {
     if (json.has("size") && size.minCoeff() <= 0.0) json.at("size").fail("expected two lengths > 0");
     object.size = {size[0], size[1]};
   }
+  if (json.has("room")) object.room = json.at("room").count();
   object.klass = class_of(object.type, object.size[0]);
   if (json.has("class")) {
     const std::string klass = json.at("class").string();
@@ -29,17 +30,16 @@ TruthObject read_object(const JsonCursor& json) {
   return object;
 }
 
-/// Intervals that concern an object; where the contact itself is known, only that.
-std::vector<TruthVisit> read_visits(const JsonCursor& json) {
-  std::vector<TruthVisit> visits;
+/// Those that concern an object become visits: the contact itself where it is known.
+void read_intervals(const JsonCursor& json, Truth& truth) {
   for (const JsonCursor& row : json.items()) {
+    if (row.at("label").string().starts_with("distractor")) ++truth.distractors;
     if (!row.has("object")) continue;
     const bool contact = row.has("contact_begin");
-    visits.push_back({static_cast<std::uint32_t>(row.at("object").count(UINT32_MAX)),
-                      row.at(contact ? "contact_begin" : "begin").number(),
-                      row.at(contact ? "contact_end" : "end").number()});
+    truth.visits.push_back({static_cast<std::uint32_t>(row.at("object").count(UINT32_MAX)),
+                            row.at(contact ? "contact_begin" : "begin").number(),
+                            row.at(contact ? "contact_end" : "end").number()});
   }
-  return visits;
 }
 
 /// A row is [t, x, y, z, qw, qx, qy, qz].
@@ -64,9 +64,14 @@ Result<Truth> truth_from_text(const std::string& text) {
   if (root.at("version").count() != 1) root.at("version").fail("this program reads version 1");
   Truth truth;
   for (const JsonCursor& object : root.at("objects").items()) truth.objects.push_back(read_object(object));
-  truth.untouched = root.at("unvisited").items().size();
+  for (const JsonCursor& object : root.at("unvisited").items()) truth.untouched.push_back(read_object(object));
+  if (root.has("rooms"))
+    for (const JsonCursor& room : root.at("rooms").items()) {
+      truth.rooms.emplace_back();
+      for (const JsonCursor& corner : room.at("polygon").items()) truth.rooms.back().emplace_back(corner.vector<2>());
+    }
   truth.trajectory = read_trajectory(root.at("trajectory"));
-  if (root.has("intervals")) truth.visits = read_visits(root.at("intervals"));
+  if (root.has("intervals")) read_intervals(root.at("intervals"), truth);
   if (error) return *error;
   return truth;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ struct TruthObject {
   ObjectType type = ObjectType::Wall;
   Class klass = Class::Wall;
   Pose pose;  ///< centre; +x: a wall's or screen's normal, where a chair's sitter faces, a table's long side
-  std::array<double, 2> size{};  ///< [long, short], walls [length, height], m; zero for chairs
+  std::array<double, 2> size{};     ///< [long, short], walls [length, height], m; zero for chairs
+  std::optional<std::size_t> room;  ///< walls: which of Truth::rooms it bounds, where the truth says
 };
 
 /// A time in which the wearer really touched or sat on one of the objects, s.
@@ -39,10 +41,12 @@ struct TruthVisit {
 
 /// What `kinemap sim` says of a session.
 struct Truth {
-  std::vector<TruthObject> objects;   ///< those that the wearer touched or sat on
-  std::size_t untouched = 0;          ///< others: nobody can find them
-  std::vector<TimedPose> trajectory;  ///< true pelvis, by ascending time (s since the first frame)
-  std::vector<TruthVisit> visits;     ///< empty: not known
+  std::vector<TruthObject> objects;                 ///< those that the wearer touched or sat on
+  std::vector<TruthObject> untouched;               ///< others: nobody can find them
+  std::vector<std::vector<Eigen::Vector2d>> rooms;  ///< corners, one wall from each to the next
+  std::vector<TimedPose> trajectory;                ///< true pelvis, by ascending time (s since the first frame)
+  std::vector<TruthVisit> visits;                   ///< empty: not known
+  std::size_t distractors = 0;                      ///< gestures and postures that mean nothing
 };
 
 /// Reads a truth.json. The Error names the key path.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/bench/levers.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace kinemap::bench {
+namespace {
+
+constexpr Lever kLevers[] = {
+    {"wrist as touching point", "the wrist is taken for the point that touches, as in the paper",
+     R"({"mapper": {"hand": {"tip_m": 0.001, "tip_sigma_m": 0}}})"},
+    {"touching point not estimated", "the finger tip of a hand of nominal length touches",
+     R"({"mapper": {"hand": {"tip_sigma_m": 0}}})"},
+    {"reach not cut off", "the way of the hand to the surface and back counts as contact",
+     R"({"mapper": {"landmarks": {"reach_max_s": 0}}})"},
+    {"no right angles", "walls need not be parallel or at right angles",
+     R"({"mapper": {"walls": {"right_angle_sigma_rad": 0}}})"},
+    {"over-confident heading", "odometry is believed to turn by 0.3°/√s only",
+     R"({"mapper": {"odometry": {"heading_rad_per_sqrt_s": 0.0052}}})"},
+    {"contacts as if independent", "each contact counts as a measurement of its own",
+     R"({"mapper": {"hand": {"contact_correlation_s": 0.001}}})"},
+    {"no robust losses", "contacts and seats that do not fit pull with all their weight",
+     R"({"mapper": {"hand": {"loss_scale": 1000}, "seats": {"loss_scale": 1000}}})"},
+    {"closures never refused", "a closure stays however much it costs",
+     R"({"mapper": {"association": {"max_cost_increase": 1000000}}})"},
+};
+
+}  // namespace
+
+std::span<const Lever> levers() { return kLevers; }
+
+Result<Config> without(const Config& config, const Lever& lever) {
+  nlohmann::ordered_json json = to_json(config);
+  json.merge_patch(nlohmann::ordered_json::parse(lever.overrides));
+  return config_from_text(json.dump(), "lever \"" + std::string(lever.name) + "\"");
+}
+
+}  // namespace kinemap::bench

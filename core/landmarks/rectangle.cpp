@@ -8,6 +8,7 @@
 
 #include "core/landmarks/corners.hpp"
 #include "core/landmarks/geometry.hpp"
+#include "core/landmarks/sides.hpp"
 #include "core/pose.hpp"
 
 namespace kinemap {
@@ -40,20 +41,6 @@ std::optional<double> dominant_heading(Points points, const std::vector<std::siz
   }
   if (s == 0.0 && c == 0.0) return std::nullopt;
   return std::atan2(s, c) / 4.0;
-}
-
-/// Unit direction of travel at each point over ±`half_window` points.
-std::vector<Eigen::Vector2d> tangents(Points points, double half_window_m) {
-  const std::size_t n = points.size();
-  std::vector<Eigen::Vector2d> out(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t a = i, b = i;
-    while (a > 0 && (points[a] - points[i]).norm() < half_window_m) --a;
-    while (b + 1 < n && (points[b] - points[i]).norm() < half_window_m) ++b;
-    const Eigen::Vector2d d = points[b] - points[a];
-    out[i] = d.norm() > 1e-6 ? Eigen::Vector2d(d.normalized()) : Eigen::Vector2d::Zero();
-  }
-  return out;
 }
 
 /// Splits the positions of contacts that travel along one axis into the two opposite sides: {minus, plus}, either may
@@ -107,26 +94,18 @@ std::optional<Bounds> initial_bounds(const std::vector<Eigen::Vector2d>& local,
   return bounds;
 }
 
-double side_position(const RectangleFit& fit, Edge e) { return (is_plus(e) ? 0.5 : -0.5) * fit.size[is_u(e) ? 0 : 1]; }
-
-double side_error(const RectangleFit& fit, const Eigen::Vector2d& local, Edge e) {
-  return (is_u(e) ? local.x() : local.y()) - side_position(fit, e);
-}
-
-/// Each contact to the drawn side nearest to it among those parallel to its travel; none in rounded corners.
+/// Each contact to the side that the hand was on, if it was drawn; none in corners, which people cut.
 void assign_sides(Points points, IndexRange kept, const std::vector<Eigen::Vector2d>& travel, RectangleFit& fit) {
   fit.labels.assign(points.size(), {});
   const auto turn = rotation(-fit.heading);
-  for (std::size_t i = kept.begin; i < kept.end; ++i) {
-    const Eigen::Vector2d d = turn * travel[i], local = to_local(fit, points[i]);
-    double nearest = 0.25;
-    for (const Edge e : kEdges) {
-      const double parallel = is_u(e) ? std::abs(d.y()) : std::abs(d.x());
-      if (!fit.drawn[slot(e)] || parallel < 0.8) continue;
-      const double error = std::abs(side_error(fit, local, e));
-      if (error < nearest) nearest = error, fit.labels[i].edge = e;
-    }
-  }
+  std::vector<SideQuery> contacts;
+  for (std::size_t i = kept.begin; i < kept.end; ++i)
+    contacts.push_back({to_local(fit, points[i]), turn * travel[i], Edge::None});
+  const SideCosts costs;
+  const auto sides = choose_sides(contacts, fit.size, fit.drawn, costs, false);
+  for (std::size_t k = 0; k < sides.size(); ++k)
+    if (sides[k] != Edge::None && !in_corner(contacts[k].p, fit.size, sides[k], costs))
+      fit.labels[kept.begin + k].edge = sides[k];
 }
 
 /// A side that was followed over less than this part of its length, at one end of the trace only, is the reach to the
@@ -183,7 +162,7 @@ void assign_end_corners(Points points, IndexRange kept, RectangleFit& fit) {
       double outermost = -HUGE_VAL;
       for (std::size_t i = kept.begin; i < kept.end; ++i) {
         const Eigen::Vector2d local = to_local(fit, points[i]);
-        if (std::abs(side_error(fit, local, side)) > kOnSide) continue;
+        if (std::abs(side_error(local, fit.size, side)) > kOnSide) continue;
         const double out = (is_plus(missing) ? 1.0 : -1.0) * (is_u(missing) ? local.x() : local.y());
         if (out > outermost) outermost = out, end = i;
       }
@@ -201,7 +180,7 @@ bool refine(Points points, RectangleFit& fit, bool free_heading) {
     const Eigen::Vector2d local = to_local(fit, points[i]);
     const auto add = [&](Edge e, double weight) {
       if (e == Edge::None) return;
-      const double r = side_error(fit, local, e);
+      const double r = side_error(local, fit.size, e);
       Eigen::Matrix<double, 5, 1> j = Eigen::Matrix<double, 5, 1>::Zero();
       j[is_u(e) ? 0 : 1] = -1.0;  // centre, moved along the local axes
       j[2] = is_u(e) ? local.y() : -local.x();
@@ -228,7 +207,7 @@ void measure_residual(Points points, RectangleFit& fit) {
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (fit.labels[i].edge == Edge::None) continue;
-    const double r = side_error(fit, to_local(fit, points[i]), fit.labels[i].edge);
+    const double r = side_error(to_local(fit, points[i]), fit.size, fit.labels[i].edge);
     sum += std::min(r * r, 0.01), ++n;
   }
   fit.rms = n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
@@ -248,7 +227,7 @@ std::optional<RectangleFit> fit_rectangle(Points points, const LandmarkConfig& c
     heading = dominant_heading(points, find_corners(points, config.corner_window_m, config.corner_angle_rad));
   if (!heading) return std::nullopt;
 
-  const auto travel = tangents(points, 0.3 * config.corner_window_m);
+  const auto travel = travel_directions(points, 0.3 * config.corner_window_m);
   std::vector<Eigen::Vector2d> local, local_travel;
   for (std::size_t i = 0; i < points.size(); ++i) {
     local.push_back(rotation(-*heading) * points[i]);

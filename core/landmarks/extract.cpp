@@ -13,11 +13,13 @@ namespace {
 using graph::Landmark;
 using graph::LandmarkKind;
 
-constexpr double kMinLeftover = 3.0;  // s
+constexpr double kMinLeftover = 3.0;   // s
+constexpr double kSecondChoice = 0.8;  // part of the trace that the surface that holds less of it must still hold
 
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
+  bool round_wearer = false;  ///< a level contour with the wearer inside: walls
 };
 
 /// Members of the surface in its plane: first axis `u`, second `v`, from `origin`.
@@ -41,6 +43,16 @@ bool leans(std::span<const TracePoint> points, const Surface& surface, double ma
   return std::abs(plane->normal.dot(surface.normal)) < std::cos(max_slant);
 }
 
+/// Two walls round the corner of a room, drawn at one height, look like a table seen from within it.
+bool wearer_inside(std::span<const TracePoint> points, const Surface& surface, const RectangleFit& fit) {
+  constexpr double kWithin = 0.1;  // m
+  const auto inside = std::count_if(surface.members.begin(), surface.members.end(), [&](std::size_t i) {
+    const Eigen::Vector2d body = to_local(fit, points[i].p_body.head<2>());
+    return std::abs(body.x()) < 0.5 * fit.size[0] - kWithin && std::abs(body.y()) < 0.5 * fit.size[1] - kWithin;
+  });
+  return 2 * static_cast<std::size_t>(inside) > surface.members.size();
+}
+
 Attempt table(std::span<const TracePoint> points, const Surface& surface, double floor_z,
               const LandmarkConfig& config) {
   const double height = surface.offset - floor_z;
@@ -50,6 +62,7 @@ Attempt table(std::span<const TracePoint> points, const Surface& surface, double
       in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
   const auto fit = fit_rectangle(flat, config);
   if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
+  if (wearer_inside(points, surface, *fit)) return {std::nullopt, "a level contour round the wearer, no table", true};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Table;
   seen.landmark.x = {fit->centre.x(), fit->centre.y(), surface.offset, fit->heading, fit->size[0], fit->size[1], 0.0};
@@ -134,20 +147,27 @@ void extract_range(std::span<const TracePoint> points, IndexRange range, double 
   }
   // What is left beside an object is mostly the way to it; another object takes a while to draw.
   if (depth > 0 && part.back().time_s - part.front().time_s < kMinLeftover) return;
-  const auto surface = find_surface(part, config);
-  if (!surface) {
+  const auto surfaces = find_surfaces(part, config);
+  if (surfaces.empty()) {
     if (depth == 0) out.reason = "the hand did not stay on one surface";
     return;
   }
-  auto attempt = classify(part, *surface, floor_z, config);
-  if (attempt.observation) {
-    shift(*attempt.observation, range.begin);
-    out.observations.push_back(std::move(*attempt.observation));
-  } else if (depth == 0) {
-    out.reason = attempt.reason;
+  std::size_t first = range.begin + surfaces[0].members.front(), last = range.begin + surfaces[0].members.back();
+  bool round_wearer = false;
+  for (const Surface& surface : surfaces) {
+    // One long edge of a table is no wall beside it, even where the table could not be made out.
+    if (&surface != &surfaces[0] && surface.share < kSecondChoice && !round_wearer) break;
+    auto attempt = classify(part, surface, floor_z, config);
+    if (attempt.observation) {
+      shift(*attempt.observation, range.begin);
+      first = attempt.observation->contacts.front(), last = attempt.observation->contacts.back();
+      out.observations.push_back(std::move(*attempt.observation));
+      break;
+    }
+    if (depth == 0 && out.reason.empty()) out.reason = attempt.reason;
+    round_wearer = attempt.round_wearer;
   }
   if (depth >= 3) return;
-  const std::size_t first = range.begin + surface->members.front(), last = range.begin + surface->members.back();
   extract_range(points, {range.begin, first}, floor_z, config, depth + 1, out);
   extract_range(points, {last + 1, range.end}, floor_z, config, depth + 1, out);
 }

@@ -139,7 +139,10 @@ IndexRange without_stubs(Points points, IndexRange kept, RectangleFit& fit) {
       else if (edge != Edge::None)
         front = std::min(front, i), back = i;
     }
-    if (first > last) continue;
+    if (first > last) {
+      fit.drawn[slot(side)] = false;  // the hand was never on it
+      continue;
+    }
     if (last < front)
       kept.begin = last + 1;
     else if (first > back)

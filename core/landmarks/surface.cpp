@@ -70,20 +70,44 @@ std::vector<Eigen::Vector2d> level(std::span<const TracePoint> points) {
   return out;
 }
 
+/// Robust standard deviation of the middle of the trace from the surface; its ends may be on their way.
+double spread_of(std::span<const double> distances) {
+  const std::size_t n = distances.size();
+  std::vector<double> middle;
+  for (std::size_t i = n / 6; i < n - n / 6; ++i) middle.push_back(std::abs(distances[i]));
+  return 1.48 * median(std::move(middle));
+}
+
+/// How far from a surface a contact may lie: the arm errs for seconds, in one suit little, in another much.
+double tolerance_for(double spread, const LandmarkConfig& config) {
+  return std::clamp(3.0 * spread, 0.5 * config.plane_tolerance_m, 2.0 * config.plane_tolerance_m);
+}
+
+std::vector<bool> within(std::span<const double> distances, double tolerance) {
+  std::vector<bool> inlier(distances.size());
+  for (std::size_t i = 0; i < distances.size(); ++i) inlier[i] = std::abs(distances[i]) <= tolerance;
+  return inlier;
+}
+
 std::optional<Surface> upright_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
   const auto flat = level(points);
   auto line = fit_line_robust(flat, config.plane_tolerance_m);
   if (!line) return std::nullopt;
+  std::vector<double> distances(points.size());
+  const auto measure = [&] {
+    for (std::size_t i = 0; i < flat.size(); ++i) distances[i] = line->distance(flat[i]);
+    return spread_of(distances);
+  };
+  double tolerance = tolerance_for(measure(), config);
   double lo = 0.0, hi = 0.0;
   for (const auto& p : flat) {
-    if (std::abs(line->distance(p)) > config.plane_tolerance_m) continue;
+    if (std::abs(line->distance(p)) > tolerance) continue;
     lo = std::min(lo, line->along(p)), hi = std::max(hi, line->along(p));
   }
-  const double tolerance = config.plane_tolerance_m + config.plane_tolerance_per_m * (hi - lo);
-  if (const auto wider = fit_line_robust(flat, tolerance)) line = wider;
-  std::vector<bool> inlier(points.size());
-  for (std::size_t i = 0; i < flat.size(); ++i) inlier[i] = std::abs(line->distance(flat[i])) <= tolerance;
-  Surface surface{Surface::Kind::Upright, {}, 0.0, longest_run(points, inlier)};
+  tolerance += config.plane_tolerance_per_m * (hi - lo);
+  if (const auto again = fit_line_robust(flat, tolerance)) line = again;
+  Surface surface{Surface::Kind::Upright, {}, 0.0, measure(), 0.0, {}};
+  surface.members = longest_run(points, within(distances, tolerance));
   if (surface.members.size() < 3) return std::nullopt;
   Eigen::Vector2d normal = line->normal();
   double side = 0.0;
@@ -92,6 +116,15 @@ std::optional<Surface> upright_surface(std::span<const TracePoint> points, const
   surface.normal = {normal.x(), normal.y(), 0.0};
   surface.offset = normal.dot(line->point);
   return surface;
+}
+
+/// A straight level line is no level surface: it may as well be a wall traced at one height.
+bool is_straight(std::span<const Eigen::Vector2d> flat, double tolerance) {
+  const auto line = fit_line_robust(flat, tolerance);
+  const auto off = std::count_if(flat.begin(), flat.end(), [&](const Eigen::Vector2d& p) {
+    return line && std::abs(line->distance(p)) > 2.0 * tolerance;
+  });
+  return static_cast<double>(off) < 0.1 * static_cast<double>(flat.size());
 }
 
 std::optional<Surface> level_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
@@ -105,22 +138,17 @@ std::optional<Surface> level_surface(std::span<const TracePoint> points, const L
     }
     if (score > best_score) best_score = score, best_z = candidate.p.z();
   }
-  std::vector<bool> inlier(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    inlier[i] = std::abs(points[i].p.z() - best_z) <= config.plane_tolerance_m;
-  Surface surface{Surface::Kind::Level, Eigen::Vector3d::UnitZ(), 0.0, longest_run(points, inlier)};
+  std::vector<double> distances(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) distances[i] = points[i].p.z() - best_z;
+  Surface surface{Surface::Kind::Level, Eigen::Vector3d::UnitZ(), 0.0, spread_of(distances), 0.0, {}};
+  surface.members = longest_run(points, within(distances, tolerance_for(surface.spread, config)));
   if (surface.members.size() < 3) return std::nullopt;
   std::vector<double> heights;
   std::vector<Eigen::Vector2d> flat;
   for (const std::size_t i : surface.members)
     heights.push_back(points[i].p.z()), flat.emplace_back(points[i].p.head<2>());
   surface.offset = median(heights);
-  // A straight level line is no level surface: it may as well be a wall traced at one height.
-  const auto line = fit_line_robust(flat, config.plane_tolerance_m);
-  const auto off = std::count_if(flat.begin(), flat.end(), [&](const Eigen::Vector2d& p) {
-    return line && std::abs(line->distance(p)) > 2.0 * config.plane_tolerance_m;
-  });
-  if (static_cast<double>(off) < 0.1 * static_cast<double>(flat.size())) return std::nullopt;
+  if (is_straight(flat, config.plane_tolerance_m)) return std::nullopt;
   return surface;
 }
 
@@ -145,17 +173,23 @@ IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfi
   return {front, n - back};
 }
 
-std::optional<Surface> find_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
+std::vector<Surface> find_surfaces(std::span<const TracePoint> points, const LandmarkConfig& config) {
   std::vector<std::size_t> all(points.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const double total = path_length(points, all);
-  const auto upright = upright_surface(points, config);
-  const auto flat = level_surface(points, config);
-  const double on_upright = upright ? path_length(points, upright->members) : 0.0;
-  const double on_level = flat ? path_length(points, flat->members) : 0.0;
-  const auto& best = on_level > on_upright ? flat : upright;
-  if (!best || std::max(on_level, on_upright) < 0.5 * total) return std::nullopt;
-  return best;
+  std::vector<Surface> out;
+  for (auto& surface : {upright_surface(points, config), level_surface(points, config)}) {
+    if (!surface) continue;
+    out.push_back(*surface);
+    out.back().share = path_length(points, surface->members) / std::max(1e-9, total);
+    if (out.back().share < 0.5) out.pop_back();
+  }
+  // One that holds clearly more of the trace; else the one from which it strays less.
+  if (out.size() == 2) {
+    const bool alike = std::abs(out[0].share - out[1].share) < 0.1 * std::max(out[0].share, out[1].share);
+    if (alike ? out[1].spread < out[0].spread : out[1].share > out[0].share) std::swap(out[0], out[1]);
+  }
+  return out;
 }
 
 }  // namespace kinemap

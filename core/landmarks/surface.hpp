@@ -25,6 +25,8 @@ struct Surface {
   enum class Kind : std::uint8_t { Level, Upright } kind = Kind::Upright;
   Eigen::Vector3d normal;            ///< unit; Level: up; Upright: level, towards the wearer
   double offset = 0.0;               ///< n·p = offset, m
+  double spread = 0.0;               ///< robust standard deviation of the trace from it, m
+  double share = 0.0;                ///< part of the trace's path that its members hold
   std::vector<std::size_t> members;  ///< indices of the points on it, ascending; one run in time, lift-offs left out
 };
 
@@ -32,10 +34,11 @@ struct Surface {
 /// most `reach_max_s` in which the hand moves clearly faster than it usually does, up to where it comes to rest.
 IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfig& config);
 
-/// The level or upright surface on which most of the trace lies, with its contacts; nullopt when neither holds half of
-/// it. The suit knows the vertical to a degree, so only these two hypotheses are tried: a general plane through a
-/// nearly straight trace is not determined. Points on one straight level line count as upright (a wall traced at one
-/// height).
-std::optional<Surface> find_surface(std::span<const TracePoint> points, const LandmarkConfig& config);
+/// The level and the upright surface on which most of the trace lies, with their contacts; those that hold half of it,
+/// the one that holds more first. The suit knows the vertical to a degree, so only these two hypotheses are
+/// tried: a general plane through a nearly straight trace is not determined. How far contacts may lie from the surface
+/// follows from the trace itself, since the arm of one suit errs six times as much as that of another. Points on one
+/// straight level line count as upright (a wall traced at one height).
+std::vector<Surface> find_surfaces(std::span<const TracePoint> points, const LandmarkConfig& config);
 
 }  // namespace kinemap

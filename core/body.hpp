@@ -42,6 +42,13 @@ enum class Segment : std::uint8_t {
 };
 inline constexpr std::size_t kSegmentCount = 23;
 
+/// The earth's magnetic field as one sensor of the suit has it. Metal nearby bends it, and the heading with it. What it
+/// is far from metal depends on the place on earth: judge by the difference to what it usually is in this recording.
+struct MagneticField {
+  double norm = 1.0;  ///< strength, 1: as where the suit's sensors were calibrated
+  double dip = 0.0;   ///< below the horizontal, rad, −π/2 … π/2
+};
+
 /// One whole, checked sample of one wearer. All poses are `T_odom_segment`: the suit's world frame (z up, metres),
 /// which drifts.
 struct SuitFrame {
@@ -51,6 +58,9 @@ struct SuitFrame {
       false;  ///< first frame after a restart of the suit or a jump of its clock: no odometry from the frame before
   std::array<Pose, kSegmentCount> segments;
   std::optional<Eigen::Vector3d> center_of_mass;  ///< odom frame, m; only when the suit streams type 24
+
+  /// At the sensors of the pelvis and of the right forearm; only when the suit streams type 23.
+  std::optional<MagneticField> field_pelvis, field_right_forearm;
 
   [[nodiscard]] const Pose& operator[](Segment s) const { return segments[static_cast<std::size_t>(s)]; }
   Pose& operator[](Segment s) { return segments[static_cast<std::size_t>(s)]; }

@@ -46,6 +46,17 @@ bool same_source(const Key& a, const Key& b) {
   return a.character == b.character && address_of(a.sender) == address_of(b.sender);
 }
 
+/// Of all trackers those whose field is used.
+Extras extras_of(const mxtp::TrackerItems& trackers) {
+  constexpr auto id_of = [](Segment s) { return static_cast<std::int32_t>(s) + 1; };
+  Extras out;
+  for (const mxtp::TrackerItem& item : trackers.items) {
+    if (item.id == id_of(Segment::Pelvis)) out.pelvis = item;
+    if (item.id == id_of(Segment::RightForearm)) out.right_forearm = item;
+  }
+  return out;
+}
+
 /// One sender's pose stream of one character.
 struct Stream {
   Stream(Key k, const AssemblerConfig& config, AssemblerStats& stats) : key(std::move(k)), queue(config, stats) {}
@@ -84,7 +95,7 @@ class Assembler::Impl {
 
   void route(mxtp::Datagram& datagram, std::string_view sender, const FrameSink& sink);
   void add_poses(const mxtp::Header& h, std::vector<mxtp::SegmentItem> items, Key key, const FrameSink& sink);
-  void add_center_of_mass(const mxtp::CenterOfMass& com, std::uint32_t counter, const Key& key);
+  void add_extras(const Extras& extras, std::uint32_t counter, const Key& key);
   void add_wearer(const mxtp::Datagram& datagram, const Key& key);
   void publish_wearer();
   void update_refusal();
@@ -134,7 +145,9 @@ void Assembler::Impl::route(mxtp::Datagram& datagram, std::string_view sender, c
   if (!wants(key) || (selected_ && !same_source(key, selected_->key) && !may_take_over(key))) {
     count_foreign(key, false, 1);
   } else if (const auto* com = std::get_if<mxtp::CenterOfMass>(&datagram.payload)) {
-    add_center_of_mass(*com, h.sample_counter, key);
+    add_extras({com->position, {}, {}}, h.sample_counter, key);
+  } else if (const auto* trackers = std::get_if<mxtp::TrackerItems>(&datagram.payload)) {
+    add_extras(extras_of(*trackers), h.sample_counter, key);
   } else {
     add_wearer(datagram, key);
   }
@@ -244,14 +257,14 @@ void Assembler::Impl::select(Streams::iterator stream, const FrameSink& sink) {
   publish_wearer();
 }
 
-void Assembler::Impl::add_center_of_mass(const mxtp::CenterOfMass& com, std::uint32_t counter, const Key& key) {
+void Assembler::Impl::add_extras(const Extras& extras, std::uint32_t counter, const Key& key) {
   ++stats.meta;
   Stream* stream = nullptr;
   if (selected_ && same_source(selected_->key, key)) stream = selected_.get();
   for (const auto& c : candidates_) {
     if (!stream && same_source(c->key, key)) stream = c.get();
   }
-  if (stream) stream->queue.add_center_of_mass(counter, com.position, now_s_);
+  if (stream) stream->queue.add_extras(counter, extras, now_s_);
 }
 
 void Assembler::Impl::add_wearer(const mxtp::Datagram& datagram, const Key& key) {

@@ -31,7 +31,7 @@ struct AssemblerStats {
   std::uint64_t used = 0;                                 ///< (d) in frames handed on
   std::uint64_t waiting = 0;                              ///< (d) in samples that are not whole or not due yet
   std::uint64_t skipped_types = 0;                        ///< (d) known types that are not used; type 01 beside type 02
-  std::uint64_t meta = 0;                                 ///< (d) types 12, 13, 24, 25 used
+  std::uint64_t meta = 0;                                 ///< (d) types 12, 13, 23, 24, 25 used
   std::uint64_t duplicates = 0;                           ///< (d)
   std::uint64_t late =
       0;  ///< (d) came after a newer sample had been handed on, or with a counter far off without silence

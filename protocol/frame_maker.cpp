@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/frame_maker.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kinemap {
@@ -11,6 +13,18 @@ namespace {
 // set) or not.
 constexpr double kPlausibleStepM = 0.3;
 constexpr double kPlausibleSpeed = 3.0;  // m/s
+constexpr double kLeastField = 1e-3;     // of the undisturbed one
+
+/// nullopt where there is no field at all: a sensor without a magnetometer.
+std::optional<MagneticField> field_of(const std::optional<mxtp::TrackerItem>& tracker) {
+  if (!tracker) return std::nullopt;
+  const auto& [qw, qx, qy, qz] = tracker->orientation;
+  const auto& [x, y, z] = tracker->magnetic_field;
+  const Eigen::Vector3d field = Eigen::Quaterniond(qw, qx, qy, qz).normalized() * Eigen::Vector3d(x, y, z);
+  const double norm = field.norm();
+  if (norm < kLeastField) return std::nullopt;
+  return MagneticField{norm, std::asin(std::clamp(-field.z() / norm, -1.0, 1.0))};
+}
 
 SuitFrame frame_of(const Sample& s) {
   SuitFrame out;
@@ -19,10 +33,12 @@ SuitFrame frame_of(const Sample& s) {
     const auto& [qw, qx, qy, qz] = s.items[i].orientation;
     out.segments[i] = {{x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz).normalized()};
   }
-  if (s.center_of_mass) {
-    const auto& [x, y, z] = *s.center_of_mass;
+  if (s.extras.center_of_mass) {
+    const auto& [x, y, z] = *s.extras.center_of_mass;
     out.center_of_mass = Eigen::Vector3d(x, y, z);
   }
+  out.field_pelvis = field_of(s.extras.pelvis);
+  out.field_right_forearm = field_of(s.extras.right_forearm);
   return out;
 }
 

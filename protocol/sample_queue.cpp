@@ -12,8 +12,8 @@ constexpr std::int64_t kFarthestStep =
 constexpr std::size_t kMostWaiting = 128;  ///< samples
 constexpr std::size_t kMostWaitingItems = 8192;
 constexpr std::size_t kMostRemembered = 256;
-constexpr std::size_t kMostCenters = 64;
-constexpr double kCenterExpectedS = 0.5;  ///< type 24 is part of the stream while one came so lately
+constexpr std::size_t kMostExtras = 64;
+constexpr double kExtrasExpectedS = 0.5;  ///< type 23 or 24 is part of the stream while one came so lately
 constexpr double kGuessedHz = 240.0;      ///< while the rate is unknown: hurries least
 constexpr double kStartSpanS = 0.1;       ///< time code span that tells the rate
 constexpr double kStartPatienceS = 0.3;
@@ -32,7 +32,7 @@ bool SampleQueue::is_restart(std::int64_t step, double silence_s, double rate_hz
 
 void SampleQueue::begin_anew(std::uint32_t counter, const Emit& emit) {
   flush(emit);
-  centers_.clear();
+  extras_.clear();
   emitted_.clear();
   newest_counter_ = counter;
   ++newest_index_;
@@ -106,20 +106,30 @@ void SampleQueue::add(const mxtp::Header& h, std::vector<mxtp::SegmentItem> item
   insert(partial, h, std::move(items));
 }
 
-void SampleQueue::add_center_of_mass(std::uint32_t counter, const std::array<float, 3>& position, double arrival_s) {
-  centers_.emplace_back(counter, position);
-  if (centers_.size() > kMostCenters) centers_.pop_front();
-  center_arrival_s_ = arrival_s;
+void SampleQueue::add_extras(std::uint32_t counter, const Extras& extras, double arrival_s) {
+  const auto is_it = [counter](const auto& e) { return e.first == counter; };
+  auto it = std::find_if(extras_.begin(), extras_.end(), is_it);
+  if (it == extras_.end()) {
+    if (extras_.size() == kMostExtras) extras_.pop_front();
+    it = extras_.emplace(extras_.end(), counter, Extras{});
+  }
+  Extras& all = it->second;
+  if (extras.center_of_mass) all.center_of_mass = extras.center_of_mass, center_arrival_s_ = arrival_s;
+  if (extras.pelvis) all.pelvis = extras.pelvis, tracker_arrival_s_ = arrival_s;
+  if (extras.right_forearm) all.right_forearm = extras.right_forearm;
 }
 
-bool SampleQueue::has_center_of_mass(const Partial& p, double now_s) const {
-  if (!center_arrival_s_ || now_s - *center_arrival_s_ > kCenterExpectedS) return true;  // none is to be expected
+bool SampleQueue::has_extras(const Partial& p, double now_s) const {
+  const auto expected = [now_s](const auto& arrival_s) { return arrival_s && now_s - *arrival_s <= kExtrasExpectedS; };
+  const bool center = expected(center_arrival_s_), trackers = expected(tracker_arrival_s_);
+  if (!center && !trackers) return true;
   if (waiting_.size() > 1 && std::any_of(std::next(waiting_.begin()), waiting_.end(),
                                          [](const auto& later) { return later.second.whole(); })) {
-    return true;  // the next sample is here: this one's centre of mass is lost
+    return true;  // the next sample is here: what belongs to this one is lost
   }
-  return std::any_of(centers_.begin(), centers_.end(),
-                     [&](const auto& c) { return c.first == p.header.sample_counter; });
+  return std::any_of(extras_.begin(), extras_.end(), [&](const auto& e) {
+    return e.first == p.header.sample_counter && (!center || e.second.center_of_mass) && (!trackers || e.second.pelvis);
+  });
 }
 
 bool SampleQueue::overdue(const Waiting::value_type& front, double now_s, double rate_hz) const {
@@ -146,7 +156,7 @@ bool SampleQueue::drain(double now_s, double rate_hz, const Emit& emit) {
     const auto& front = *waiting_.begin();
     const bool whole = front.second.whole();
     const bool next = front.second.restarted || !last_emitted_ || front.first == *last_emitted_ + 1;
-    if (whole && next && has_center_of_mass(front.second, now_s)) {
+    if (whole && next && has_extras(front.second, now_s)) {
       emit_front(emit);
     } else if (!overdue(front, now_s, rate_hz)) {
       break;
@@ -169,9 +179,9 @@ void SampleQueue::emit_front(const Emit& emit) {
   out.restarted = p.restarted;
   out.items.reserve(p.items);
   for (const auto& [part, items] : p.parts) out.items.insert(out.items.end(), items.begin(), items.end());
-  const auto center =
-      std::find_if(centers_.begin(), centers_.end(), [&](const auto& c) { return c.first == p.header.sample_counter; });
-  if (center != centers_.end()) out.center_of_mass = center->second;
+  const auto extras =
+      std::find_if(extras_.begin(), extras_.end(), [&](const auto& e) { return e.first == p.header.sample_counter; });
+  if (extras != extras_.end()) out.extras = extras->second;
   if (last_emitted_ && !p.restarted)
     stats_->lost_samples += static_cast<std::uint64_t>(node.key() - *last_emitted_ - 1);
   last_emitted_ = node.key();

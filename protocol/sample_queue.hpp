@@ -15,6 +15,12 @@
 
 namespace kinemap {
 
+/// What other datagrams say of a sample's pose.
+struct Extras {
+  std::optional<std::array<float, 3>> center_of_mass;      ///< type 24
+  std::optional<mxtp::TrackerItem> pelvis, right_forearm;  ///< type 23
+};
+
 /// One sample of one character, all its datagrams joined.
 struct Sample {
   SampleClock clock;
@@ -22,7 +28,7 @@ struct Sample {
   std::vector<mxtp::SegmentItem> items;  ///< body, props, left fingers, right fingers
   std::uint64_t datagrams = 0;
   bool restarted = false;  ///< the first one after the counter started anew
-  std::optional<std::array<float, 3>> center_of_mass;
+  Extras extras;
 };
 
 /// Joins the pose datagrams of one sender's character to samples and puts them in order. Holds the first samples back
@@ -36,7 +42,7 @@ class SampleQueue {
 
   void add(const mxtp::Header& header, std::vector<mxtp::SegmentItem> items, double arrival_s, double rate_hz,
            const Emit& emit);
-  void add_center_of_mass(std::uint32_t counter, const std::array<float, 3>& position, double arrival_s);
+  void add_extras(std::uint32_t counter, const Extras& extras, double arrival_s);
   /// Emits what is due at `now_s`. True once the queue has begun to emit.
   bool drain(double now_s, double rate_hz, const Emit& emit);
   /// Emits whatever is whole, drops the rest.
@@ -66,7 +72,7 @@ class SampleQueue {
   bool insert(Partial& partial, const mxtp::Header& header, std::vector<mxtp::SegmentItem> items);
   [[nodiscard]] bool overdue(const Waiting::value_type& front, double now_s, double rate_hz) const;
   [[nodiscard]] bool may_start(double now_s) const;
-  [[nodiscard]] bool has_center_of_mass(const Partial& partial, double now_s) const;
+  [[nodiscard]] bool has_extras(const Partial& partial, double now_s) const;
   void emit_front(const Emit& emit);
   void drop_front();
 
@@ -81,9 +87,9 @@ class SampleQueue {
   double newest_arrival_s_ = 0.0;
   bool restart_pending_ = false;
   std::optional<std::int64_t> last_emitted_;
-  std::deque<std::pair<std::int64_t, std::uint32_t>> emitted_;          ///< the latest ones: index and time code
-  std::deque<std::pair<std::uint32_t, std::array<float, 3>>> centers_;  ///< the latest ones: counter and position
-  std::optional<double> center_arrival_s_;
+  std::deque<std::pair<std::int64_t, std::uint32_t>> emitted_;  ///< the latest ones: index and time code
+  std::deque<std::pair<std::uint32_t, Extras>> extras_;         ///< the latest ones, by counter
+  std::optional<double> center_arrival_s_, tracker_arrival_s_;
 };
 
 }  // namespace kinemap

@@ -66,12 +66,25 @@ struct Scale {  ///< type 13, put together
 struct CenterOfMass {  ///< type 24
   std::array<float, 3> position{};
 };
+/// One item of type 23: what a motion tracker measures. Vectors are in the tracker's own axes, but for the free
+/// acceleration.
+struct TrackerItem {
+  std::int32_t id = 0;                           ///< of the segment that carries it, 1-based
+  std::array<float, 4> orientation{1, 0, 0, 0};  ///< of the tracker in the world, w x y z, unit
+  std::array<float, 3> free_acceleration{};      ///< without gravity, world axes, m/s²
+  std::array<float, 3> acceleration{};           ///< with gravity, m/s²
+  std::array<float, 3> angular_velocity{};       ///< rad/s
+  std::array<float, 3> magnetic_field{};         ///< 1: as strong as where the suit's sensors were calibrated
+};
+struct TrackerItems {  ///< type 23
+  std::vector<TrackerItem> items;
+};
 struct TimeCode {  ///< type 25, "HH:MM:SS.mmm"
   std::string text;
 };
 struct Skipped {};  ///< a known type whose payload we do not use
 
-using Payload = std::variant<PoseItems, MetaData, ScaleFragment, CenterOfMass, TimeCode, Skipped>;
+using Payload = std::variant<PoseItems, MetaData, ScaleFragment, CenterOfMass, TrackerItems, TimeCode, Skipped>;
 
 struct Datagram {
   Header header;
@@ -109,6 +122,8 @@ std::vector<Bytes> encode_poses_euler(Header header, std::span<const SegmentItem
 Bytes encode_meta(Header header, const MetaData& meta);
 std::vector<Bytes> encode_scale(Header header, const Scale& scale, std::size_t max_datagram = 2040);
 Bytes encode_center_of_mass(Header header, const CenterOfMass& com);
+std::vector<Bytes> encode_trackers(Header header, std::span<const TrackerItem> items,
+                                   std::size_t max_datagram = 2040);  ///< 23
 Bytes encode_time_code(Header header, const TimeCode& time_code);
 
 }  // namespace kinemap::mxtp

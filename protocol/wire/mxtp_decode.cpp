@@ -107,6 +107,27 @@ PayloadOr read_center_of_mass(BigEndianReader& in) {
   return Payload{com};
 }
 
+PayloadOr read_trackers(const Header& h, BigEndianReader& in) {
+  constexpr std::size_t kItemSize = 68, kPublishedSize = 44;
+  if (h.items == 0) return Fault::BadItemCount;
+  if (in.remaining() == h.items * kPublishedSize) return Payload{Skipped{}};
+  if (in.remaining() < h.items * kItemSize) return Fault::TooShort;
+  if (in.remaining() > h.items * kItemSize) return Fault::BadLength;
+  TrackerItems out;
+  for (int i = 0; i < h.items; ++i) {
+    TrackerItem item;
+    item.id = in.i32();
+    item.orientation = floats<4>(in);
+    for (auto* v : {&item.free_acceleration, &item.acceleration, &item.angular_velocity, &item.magnetic_field}) {
+      *v = floats<3>(in);
+      if (!is_finite(*v)) return Fault::NotFinite;
+    }
+    if (const auto fault = fault_of(SegmentItem{item.id, item.magnetic_field, item.orientation})) return *fault;
+    out.items.push_back(item);
+  }
+  return Payload{std::move(out)};
+}
+
 PayloadOr read_time_code(BigEndianReader& in) {
   constexpr std::string_view kPattern = "00:00:00.000";
   if (in.remaining() < kPattern.size()) return Fault::TooShort;
@@ -134,6 +155,8 @@ PayloadOr read_payload(const Header& h, BigEndianReader& in) {
       const auto bytes = in.take(in.remaining());
       return Payload{ScaleFragment{{bytes.begin(), bytes.end()}}};
     }
+    case 23:
+      return read_trackers(h, in);
     case 24:
       return read_center_of_mass(in);
     case 25:

@@ -122,6 +122,20 @@ Bytes encode_center_of_mass(Header header, const CenterOfMass& com) {
   return single(header, 24, 1, w.view());
 }
 
+std::vector<Bytes> encode_trackers(Header header, std::span<const TrackerItem> items, std::size_t max_datagram) {
+  BigEndianWriter w;
+  for (const TrackerItem& item : items) {
+    w.i32(item.id);
+    for (const float f : item.orientation) w.f32(f);
+    put_vector(w, item.free_acceleration);
+    put_vector(w, item.acceleration);
+    put_vector(w, item.angular_velocity);
+    put_vector(w, item.magnetic_field);
+  }
+  header.type = 23;
+  return split(header, w.view(), 68, true, max_datagram);
+}
+
 Bytes encode_time_code(Header header, const TimeCode& time_code) {
   BigEndianWriter w;
   put_string(w, time_code.text);

@@ -497,6 +497,58 @@ TEST(Assembler, TheCentreOfMassGoesWithItsSample) {
   }
 }
 
+/// A field of `norm` that dips by `dip`, as a tracker on that segment has it that is mounted askew and believes in a
+/// heading that is off.
+mxtp::TrackerItem tracker(Segment segment, double norm, double dip) {
+  const Eigen::Quaterniond heading(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  const Eigen::Quaterniond mount = Eigen::Quaterniond(0.3, -0.2, 0.5, 0.8).normalized();
+  const Eigen::Vector3d field = mount.conjugate() * (norm * Eigen::Vector3d(0, std::cos(dip), -std::sin(dip)));
+  const Eigen::Quaternionf q = (heading * mount).cast<float>();
+  mxtp::TrackerItem item;
+  item.id = static_cast<std::int32_t>(segment) + 1;
+  item.orientation = {q.w(), q.x(), q.y(), q.z()};
+  for (std::size_t k = 0; k < 3; ++k) item.magnetic_field[k] = static_cast<float>(field[static_cast<long>(k)]);
+  return item;
+}
+
+TEST(Assembler, TheMagneticFieldGoesWithItsSample) {
+  for (const bool field_first : {true, false}) {
+    Bench bench;
+    const auto norm = [](std::uint64_t k) { return 0.5 + 0.002 * static_cast<double>(k); };
+    for (std::uint64_t k = 0; k < 300; ++k) {
+      const double t = 100.0 + static_cast<double>(k) / 120.0;
+      const std::vector items{tracker(Segment::Head, 9.0, 0.0), tracker(Segment::Pelvis, norm(k), 1.1),
+                              tracker(Segment::RightForearm, 0.8, -0.4)};
+      std::vector<Arrival> sample{{mxtp::encode_poses(header_of(k), body_items(k))[0], t}};
+      for (auto& part : mxtp::encode_trackers(header_of(k), items, 100))  // each in its own datagram
+        sample.insert(field_first ? sample.begin() : sample.end(), {part, t});
+      bench.add(sample);
+    }
+    bench.flush();
+    ASSERT_EQ(bench.frames.size(), 300U);
+    EXPECT_EQ(bench.stats().meta, 900U);
+    std::size_t with = 0;
+    for (const SuitFrame& f : bench.frames) {
+      if (!f.field_pelvis) continue;
+      ++with;
+      EXPECT_NEAR(f.field_pelvis->norm, norm(f.index), 1e-6);
+      EXPECT_NEAR(f.field_pelvis->dip, 1.1, 1e-6);
+      if (field_first) {
+        ASSERT_TRUE(f.field_right_forearm);
+        EXPECT_NEAR(f.field_right_forearm->dip, -0.4, 1e-6);
+      }
+    }
+    EXPECT_GE(with, 299U);
+  }
+}
+
+TEST(Assembler, WithoutTrackersThereIsNoField) {
+  Bench bench;
+  bench.add(walk(0, 60));
+  bench.flush();
+  for (const SuitFrame& f : bench.frames) EXPECT_FALSE(f.field_pelvis || f.field_right_forearm);
+}
+
 TEST(Assembler, QuaternionSignsAreAligned) {
   Bench bench;
   std::mt19937 random(5);
@@ -721,6 +773,9 @@ TEST(Assembler, MutationsNeverBreakTheRules) {
     for (int k = 0; k < 30; ++k) {
       all.insert(all.begin() + static_cast<long>(random() % all.size()),
                  {mxtp::encode_center_of_mass(header_of(random() % 200), {{0, 0, 1}}), 100.2});
+      all.insert(
+          all.begin() + static_cast<long>(random() % all.size()),
+          {mxtp::encode_trackers(header_of(random() % 200), std::array{tracker(Segment::Pelvis, 1, 1)})[0], 100.2});
     }
     for (Arrival& a : all) {
       switch (random() % 8) {

@@ -40,6 +40,10 @@ T payload_of(std::span<const std::byte> bytes) {
   return payload ? *payload : T{};
 }
 
+TrackerItem tracker(std::int32_t id) {
+  return {id, {0.5F, -0.5F, 0.5F, 0.5F}, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {0.3F, 0, -0.9F}};
+}
+
 /// One datagram of each type that is decoded, and one of a type that is skipped.
 std::vector<Bytes> one_of_each() {
   Header h;
@@ -55,7 +59,8 @@ std::vector<Bytes> one_of_each() {
           encode_scale(h, scale)[0],
           encode_center_of_mass(h, {{1, 2, 3}}),
           encode_time_code(h, {"12:34:56.789"}),
-          skipped};
+          skipped,
+          encode_trackers(h, std::array{tracker(1), tracker(10)})[0]};
 }
 
 void put_u8(Bytes& b, std::size_t at, unsigned v) { b[at] = static_cast<std::byte>(v); }
@@ -211,7 +216,9 @@ TEST(MxtpFaults, EveryTruncationOfOldSendersIsRefusedToo) {
     const bool open_ended = bytes[4] == std::byte{'2'} && bytes[5] == std::byte{'1'};  // skipped: any length
     const bool fragment = bytes[4] == std::byte{'1'} && bytes[5] == std::byte{'3'};    // joined first
     EXPECT_TRUE(std::holds_alternative<Datagram>(decode(bytes)));
+    const bool tracker = bytes[4] == std::byte{'2'} && bytes[5] == std::byte{'3'};
     for (std::size_t n = 0; n < bytes.size() && !(open_ended && n >= 24) && !(fragment && n > 24); ++n) {
+      if (tracker && n == kHeaderSize + 2 * 44U) continue;  // as long as two items of the published size: skipped
       fault_of(std::span(bytes).first(n));
     }
   }
@@ -296,6 +303,44 @@ TEST(MxtpFaults, QuaternionNorm) {
   EXPECT_EQ(fault_of(with_norm(0.0F)), Fault::NotUnit);
   EXPECT_EQ(fault_of(with_norm(3e38F)), Fault::NotUnit);
   EXPECT_EQ(payload_of<PoseItems>(with_norm(1.005F)).items.size(), 23U);
+}
+
+TEST(MxtpRoundTrip, Trackers) {
+  const Bytes bytes = one_of_each()[7];
+  ASSERT_EQ(bytes.size(), kHeaderSize + 2 * 68U);
+  const auto items = payload_of<TrackerItems>(bytes).items;
+  ASSERT_EQ(items.size(), 2U);
+  const TrackerItem& got = items[1];
+  const TrackerItem want = tracker(10);
+  EXPECT_EQ(got.id, 10);
+  EXPECT_EQ(got.orientation, want.orientation);
+  EXPECT_EQ(got.free_acceleration, want.free_acceleration);
+  EXPECT_EQ(got.acceleration, want.acceleration);
+  EXPECT_EQ(got.angular_velocity, want.angular_velocity);
+  EXPECT_EQ(got.magnetic_field, want.magnetic_field);
+  std::vector<TrackerItem> all(17, tracker(3));
+  EXPECT_EQ(encode_trackers({}, all).size(), 1U);
+  EXPECT_EQ(encode_trackers({}, all, 700).size(), 2U);
+}
+
+/// The published item is shorter; nothing is known of it that could be used.
+TEST(MxtpRoundTrip, TrackersOfThePublishedSizeAreSkipped) {
+  Bytes bytes = encode_trackers({}, std::array{tracker(1)})[0];
+  bytes.resize(kHeaderSize + 44);
+  put_u16(bytes, 22, 44);
+  payload_of<Skipped>(bytes);
+}
+
+TEST(MxtpFaults, Trackers) {
+  Bytes bytes = encode_trackers({}, std::array{tracker(1)})[0];
+  put_f32(bytes, kHeaderSize + 4, 0.9F);
+  EXPECT_EQ(fault_of(bytes), Fault::NotUnit);
+  for (const std::size_t at : {20U, 32U, 44U, 56U}) {
+    Bytes nan = encode_trackers({}, std::array{tracker(1)})[0];
+    put_f32(nan, kHeaderSize + at, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(fault_of(nan), Fault::NotFinite);
+  }
+  EXPECT_EQ(fault_of(encode_trackers({}, std::array{tracker(-1)})[0]), Fault::OutOfRange);
 }
 
 TEST(MxtpFaults, Range) {

@@ -36,12 +36,6 @@ inline const Interval* interval_at(const Session& session, double time_s, const 
   return nullptr;
 }
 
-/// From the map frame back to the building's.
-inline Vec3 to_building(const Session& session, const Vec3& p_map) {
-  const Placed& T = session.T_map_building();
-  return T.q.conjugate() * (p_map - T.p);
-}
-
 inline double level_gap(const Sample& sample) {
   return (sample.reported[kPelvis].p - sample.truth[kPelvis].p).head<2>().norm();
 }

@@ -158,6 +158,64 @@ TEST(SimStream, DatagramsDecodeAtEveryRate) {
   }
 }
 
+/// Strength and dip as the pelvis' tracker has them, and how far the pelvis is from the nearest metal.
+struct FieldSample {
+  double norm, dip, metal_m;
+};
+std::vector<FieldSample> fields(Severity drift) {
+  SimOptions options = seeded(4);
+  options.drift = drift;
+  options.send_tracker = true;
+  auto source = LiveSource::create(options);
+  EXPECT_TRUE(source);
+  std::vector<FieldSample> out;
+  while (const auto packets = source->next()) {
+    for (const auto& bytes : packets->datagrams) {
+      const auto decoded = mxtp::decode(bytes);
+      const auto* datagram = std::get_if<mxtp::Datagram>(&decoded);
+      const auto* trackers = datagram ? std::get_if<mxtp::TrackerItems>(&datagram->payload) : nullptr;
+      if (trackers == nullptr) continue;
+      EXPECT_EQ(trackers->items.size(), 17U);
+      const auto& [id, q, free, acceleration, turn, m] = trackers->items[0];
+      EXPECT_EQ(id, 1);
+      const Vec3 field = Quat(q[0], q[1], q[2], q[3]) * Vec3(m[0], m[1], m[2]);
+      double metal = 1e9;
+      const Vec3 p = source->session().to_building(source->sample().truth[kPelvis].p);
+      for (const auto& patch : source->session().patches()) metal = std::min(metal, patch.metal.distance(p.head<2>()));
+      out.push_back({field.norm(), std::asin(-field.z() / field.norm()), metal});
+    }
+  }
+  return out;
+}
+
+TEST(SimStream, TheFieldIsBentBesideMetalAndNearlyCalmElsewhere) {
+  const auto spread = [](const std::vector<FieldSample>& all, double near, double far) {
+    double sum = 0.0, sum2 = 0.0, n = 0.0;
+    for (const auto& f : all) {
+      if (f.metal_m < near || f.metal_m > far) continue;
+      n += 1.0, sum += f.norm, sum2 += f.norm * f.norm;
+      EXPECT_GT(f.norm, 0.3);
+      EXPECT_LT(f.norm, 1.8);
+      EXPECT_GT(f.dip, radians(25.0));
+    }
+    EXPECT_GT(n, 500.0);
+    return std::sqrt(sum2 / n - sum * sum / n / n);
+  };
+  const auto bent = fields(Severity::Default);
+  EXPECT_GT(spread(bent, 0.0, 0.35), 2.0 * spread(bent, 0.8, 1e8));
+  EXPECT_LT(spread(fields(Severity::Good), 0.0, 2e9), 0.06);  // no metal at all
+}
+
+TEST(SimStream, NoTrackersUnlessAskedFor) {
+  auto source = LiveSource::create(seeded(4));
+  ASSERT_TRUE(source);
+  for (int i = 0; i < 60; ++i) {
+    const auto packets = source->next();
+    ASSERT_TRUE(packets);
+    for (const auto& bytes : packets->datagrams) EXPECT_FALSE(bytes[4] == std::byte{'2'} && bytes[5] == std::byte{'3'});
+  }
+}
+
 TEST(SimStream, LossesComeInBurstsAsOftenAsAsked) {
   for (const auto& [drift, part] : {std::pair(Severity::Good, 0.0), {Severity::Default, 0.01}, {Severity::Bad, 0.30}}) {
     SimOptions options = seeded(2);

@@ -55,7 +55,7 @@ TEST_P(Seeds, TouchingPointLiesOnTheObjectWhileInContact) {
     const Interval* trace = interval_at(*session, s.time_s, "trace");
     if (trace == nullptr || s.time_s < trace->contact_begin_s || s.time_s > trace->contact_end_s) return;
     if (off_the_surface(*trace, s.time_s)) return;
-    errors.push_back(distance_to_object(session->building(), trace->object, to_building(*session, s.p_map_touch)));
+    errors.push_back(distance_to_object(session->building(), trace->object, session->to_building(s.p_map_touch)));
   });
   ASSERT_GT(errors.size(), 1000U);
   std::sort(errors.begin(), errors.end());
@@ -90,7 +90,7 @@ TEST_P(Seeds, NobodyWalksThroughWallsOrFurniture) {
   const auto session = Seeds::session();
   double least = 1e9;
   run(*session, [&](const Sample& s) {
-    const Vec3 pelvis = to_building(*session, s.truth[kPelvis].p);
+    const Vec3 pelvis = session->to_building(s.truth[kPelvis].p);
     if (upright(*session, s.time_s)) least = std::min(least, session->building().clearance(pelvis.head<2>()));
   });
   EXPECT_GT(least, 0.10);
@@ -105,7 +105,7 @@ TEST_P(Seeds, LeftHandIsOnTheHipAndTheRightOneOnItsWayBeforeContact) {
     if (trace == nullptr) return;
     if (s.time_s <= trace->begin_s + 0.05) {
       before[static_cast<std::size_t>(trace - session->script().score.intervals.data())] =
-          distance_to_object(session->building(), trace->object, to_building(*session, s.p_map_touch));
+          distance_to_object(session->building(), trace->object, session->to_building(s.p_map_touch));
     }
     if (s.time_s < trace->contact_begin_s || s.time_s > trace->contact_end_s) return;
     farthest = std::max(farthest, (s.truth[kLeftHand].p - s.truth[kLeftUpperLeg].p).norm());
@@ -182,7 +182,7 @@ TEST(SimWearer, SitsOnTheSeat) {
     if (sit == nullptr || s.time_s < sit->contact_begin_s + 0.6 || s.time_s > sit->contact_end_s - 0.1) return;
     for (const auto& chair : session->building().chairs) {
       if (chair.id != sit->object) continue;
-      const Vec3 hips = to_building(*session, s.truth[kPelvis].p);
+      const Vec3 hips = session->to_building(s.truth[kPelvis].p);
       const double before = (hips.head<2>() - chair.seat).dot(direction(chair.heading));
       EXPECT_NEAR(hips.z() - chair.height, 0.09, 0.02);
       EXPECT_NEAR(before, 0.075, 0.05);

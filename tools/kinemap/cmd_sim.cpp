@@ -166,6 +166,8 @@ void add_what(CLI::App& command, Options& options) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--packet-loss", options.packet_loss, "Part of the samples lost")->check(CLI::Range(0.0, 0.9));
+  command.add_flag("--send-tracker", options.sim.send_tracker,
+                   "Also send what the sensors measure (type 23), with the magnetic field");
   command.add_flag("--no-distractors", options.no_distractors, "No gestures that mean nothing");
 }
 

@@ -47,6 +47,7 @@ struct SimOptions {
   bool send_meta = true;              ///< type 12 about once a second
   bool send_scale = true;             ///< type 13 about once a second
   bool send_center_of_mass = false;   ///< type 24 with every sample
+  bool send_tracker = false;          ///< type 23 with every sample; MVN sends it only when asked to
   Format format = Format::Pcap;
   std::string out_dir = ".";
   std::uint16_t port = 9763;  ///< destination port written to the .pcap

@@ -40,6 +40,11 @@ class Session {
   /// From the building's frame to the map frame.
   [[nodiscard]] const Placed& T_map_building() const { return T_map_building_; }
   [[nodiscard]] Vec3 to_map(const Vec3& p) const { return T_map_building_.p + T_map_building_.q * p; }
+  /// And back.
+  [[nodiscard]] Vec3 to_building(const Vec3& p) const {
+    return T_map_building_.q.conjugate() * (p - T_map_building_.p);
+  }
+  [[nodiscard]] const std::vector<MagneticPatch>& patches() const { return suit_->patches(); }
   [[nodiscard]] double heading_to_map(double heading) const { return wrapped(heading + map_turn_); }
 
  private:

@@ -66,7 +66,8 @@ Transmitter::Transmitter(const Session& session)
       loss_(session.options().packet_loss ? *session.options().packet_loss : session.column().packet_loss),
       burst_(session.column().loss_burst),
       first_counter_(static_cast<std::uint32_t>(random_.integer(0, 100000))),
-      first_time_ms_(static_cast<std::uint32_t>(random_.integer(8 * 3600, 18 * 3600)) * 1000U) {}
+      first_time_ms_(static_cast<std::uint32_t>(random_.integer(8 * 3600, 18 * 3600)) * 1000U),
+      trackers_(session) {}
 
 mxtp::Header Transmitter::header(int type, const Sample& sample) const {
   mxtp::Header h;
@@ -103,6 +104,7 @@ Packets Transmitter::send(const Sample& sample) {
   Packets packets;
   packets.time_s = sample.time_s;
   const auto segments = items(sample.reported);
+  const auto trackers = session_.options().send_tracker ? trackers_.measure(sample) : std::vector<mxtp::TrackerItem>{};
   const bool meta = sample.time_s >= next_meta_s_;
   if (meta) next_meta_s_ += 1.0;
   if (lose(sample.index)) {
@@ -111,6 +113,9 @@ Packets Transmitter::send(const Sample& sample) {
   }
   const SimOptions& options = session_.options();
   packets.datagrams = mxtp::encode_poses(header(2, sample), segments);
+  if (options.send_tracker) {
+    for (auto& part : mxtp::encode_trackers(header(23, sample), trackers)) packets.datagrams.push_back(std::move(part));
+  }
   if (options.send_center_of_mass) {
     packets.datagrams.push_back(
         mxtp::encode_center_of_mass(header(24, sample), {floats(center_of_mass(sample.reported))}));

@@ -6,6 +6,7 @@
 
 #include "protocol/wire/mxtp.hpp"
 #include "tools/sim/session.hpp"
+#include "tools/sim/trackers.hpp"
 
 namespace kinemap::sim {
 
@@ -15,8 +16,8 @@ struct Packets {
   std::vector<mxtp::Bytes> datagrams;
 };
 
-/// Turns reported samples into what MVN sends: type 02 for every sample, types 12, 13 and 24 as asked for; losses in
-/// bursts. Quaternion signs flip at random, as MVN's do.
+/// Turns reported samples into what MVN sends: type 02 for every sample, types 12, 13, 23 and 24 as asked for; losses
+/// in bursts. Quaternion signs flip at random, as MVN's do.
 class Transmitter {
  public:
   explicit Transmitter(const Session& session);
@@ -37,6 +38,7 @@ class Transmitter {
   std::uint32_t first_counter_, first_time_ms_;
   std::array<bool, kBones> flipped_{};
   double next_meta_s_ = 0.0;
+  Trackers trackers_;
 };
 
 /// The wearer as the suit knows it: T-pose joint positions and the hand's points.

@@ -21,6 +21,7 @@ class Suit {
 
   [[nodiscard]] const Body& body() const { return body_; }
   [[nodiscard]] const Slip& slip() const { return slip_; }
+  [[nodiscard]] const std::vector<MagneticPatch>& patches() const { return patches_; }
 
  private:
   /// Orientation errors of one arm's joints and the unrest of its wrist.

@@ -53,7 +53,7 @@ struct MapObject {
   bool height_assumed = false;  ///< walls: the height was not observed
 };
 
-/// A closed ring of walls, seen from inside.
+/// A closed ring of walls, seen from inside. Side k goes from corner k to the next one.
 struct Room {
   std::uint32_t id = 0;
   std::vector<Eigen::Vector2d> polygon;  ///< counter-clockwise, map frame, m
@@ -61,6 +61,14 @@ struct Room {
   double height_m = 0.0;
   bool height_assumed = true;
   std::vector<std::uint32_t> wall_ids;
+  std::vector<std::size_t> inferred_sides;  ///< sides where nobody touched a wall, but one must be; ascending
+};
+
+/// Where the wearer walked through a wall.
+struct Doorway {
+  Eigen::Vector2d position;             ///< middle of the ways through it, map frame, m
+  double heading_rad = 0.0;             ///< of a way through it
+  std::vector<std::uint32_t> room_ids;  ///< the known rooms that it joins, ascending; none to two
 };
 
 struct TrajectoryPose {
@@ -95,6 +103,7 @@ struct MapSnapshot {
   double time_s = 0.0;             ///< stream time of the newest event in it
   std::vector<MapObject> objects;  ///< by ascending id
   std::vector<Room> rooms;
+  std::vector<Doorway> doorways;
   std::vector<TrajectoryPose> trajectory;
   std::vector<UnresolvedTrace> unresolved;
   Pose T_map_odom;  ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis

@@ -97,7 +97,13 @@ Json to_json(const Room& room) {
   if (room.height_assumed) json["height_assumed"] = true;
   json["walls"] = Json::array();
   for (const std::uint32_t id : room.wall_ids) json["walls"].push_back(id);
+  if (!room.inferred_sides.empty()) json["inferred_sides"] = room.inferred_sides;
   return json;
+}
+
+Json to_json(const Doorway& doorway) {
+  return {
+      {"position", array_of(doorway.position)}, {"heading", rounded(doorway.heading_rad)}, {"rooms", doorway.room_ids}};
 }
 
 Json to_json(const MapSnapshot& map) {
@@ -108,6 +114,7 @@ Json to_json(const MapSnapshot& map) {
                {"frame", {{"id", "map"}, {"up", "+z"}, {"units", "m"}}}};
   json["objects"] = list_json(map.objects);
   json["rooms"] = list_json(map.rooms);
+  json["doorways"] = list_json(map.doorways);
   Json& unresolved = json["unresolved"] = Json::array();
   for (const UnresolvedTrace& trace : map.unresolved)
     unresolved.push_back({{"begin", rounded(trace.begin_s)}, {"end", rounded(trace.end_s)}, {"reason", trace.reason}});

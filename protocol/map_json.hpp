@@ -14,6 +14,7 @@ namespace kinemap {
 nlohmann::ordered_json to_json(const MapSnapshot& map);
 nlohmann::ordered_json to_json(const MapObject& object);
 nlohmann::ordered_json to_json(const Room& room);
+nlohmann::ordered_json to_json(const Doorway& doorway);
 /// {"position": [x, y, z], "orientation": [w, x, y, z]}, rounded, w ≥ 0.
 nlohmann::ordered_json to_json(const Pose& pose);
 /// A number rounded to a micrometre (microradian, microsecond): far below any sigma, and short to read. No −0.

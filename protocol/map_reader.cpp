@@ -85,7 +85,18 @@ Room read_room(const JsonCursor& json) {
   room.height_assumed = json.boolean_or_false("height_assumed");
   for (const JsonCursor& id : json.at("walls").items())
     room.wall_ids.push_back(static_cast<std::uint32_t>(id.count(kMaxId)));
+  if (json.has("inferred_sides"))
+    for (const JsonCursor& side : json.at("inferred_sides").items()) room.inferred_sides.push_back(side.count());
   return room;
+}
+
+Doorway read_doorway(const JsonCursor& json) {
+  Doorway doorway;
+  doorway.position = json.at("position").vector<2>();
+  doorway.heading_rad = json.at("heading").number();
+  for (const JsonCursor& id : json.at("rooms").items())
+    doorway.room_ids.push_back(static_cast<std::uint32_t>(id.count(kMaxId)));
+  return doorway;
 }
 
 GraphSummary read_graph(const JsonCursor& json) {
@@ -120,6 +131,8 @@ Result<MapSnapshot> map_from_text(const std::string& text) {
   map.time_s = root.at("time").number();
   for (const JsonCursor& object : root.at("objects").items()) map.objects.push_back(read_object(object));
   for (const JsonCursor& room : root.at("rooms").items()) map.rooms.push_back(read_room(room));
+  if (root.has("doorways"))
+    for (const JsonCursor& doorway : root.at("doorways").items()) map.doorways.push_back(read_doorway(doorway));
   for (const JsonCursor& trace : root.at("unresolved").items())
     map.unresolved.push_back({trace.at("begin").number(), trace.at("end").number(), trace.at("reason").string()});
   map.T_map_odom = read_pose(root.at("correction"));

@@ -44,7 +44,7 @@ struct MapperConfig {
     double height_m = 2.5;                ///< assumed: a hand does not reach the ceiling
     double right_angle_sigma_rad = 0.03;  ///< soft prior that walls are parallel or at right angles; 0: none
     double right_angle_max_rad = 0.17;    ///< walls farther from a multiple of 90° are oblique and left alone
-    double join_max_m = 5.0;              ///< a wall is prolonged at most so far to meet the next
+    double join_max_m = 8.0;              ///< a wall is prolonged at most so far to meet the next
   } walls;
 
   struct Association {

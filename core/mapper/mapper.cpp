@@ -7,6 +7,7 @@
 #include "core/mapper/observe.hpp"
 #include "core/mapper/odometry.hpp"
 #include "core/mapper/publish.hpp"
+#include "core/mapper/rooms.hpp"
 #include "core/mapper/walls.hpp"
 
 namespace kinemap {
@@ -79,6 +80,7 @@ class Mapper::Impl {
     const auto marginals = graph::Marginals::compute(state_.graph);
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
+    map->doorways = find_doorways(state_, walls, map->rooms);
     map->unresolved = unresolved_;
     publish(std::move(map));
   }

@@ -91,12 +91,12 @@ void describe_wall(const MapState& state, const FiniteWall& wall, const MapperCo
   };
   object.type = ObjectType::Wall;
   object.functions = {"bound"};
-  object.pose = {at(0.5 * (wall.tail + wall.head), floor_z + 0.5 * height),
+  object.pose = {at(0.5 * (wall.tail.s + wall.head.s), floor_z + 0.5 * height),
                  upright_orientation(frame.normal, Eigen::Vector3d::UnitZ())};
-  object.size = {wall.head - wall.tail, height};
+  object.size = {wall.length(), height};
   object.height_assumed = true;
-  object.corners = {at(wall.tail, floor_z), at(wall.head, floor_z), at(wall.head, floor_z + height),
-                    at(wall.tail, floor_z + height)};
+  object.corners = {at(wall.tail.s, floor_z), at(wall.head.s, floor_z), at(wall.head.s, floor_z + height),
+                    at(wall.tail.s, floor_z + height)};
   object.plane = plane_through(object.pose.p, frame.normal);
 }
 
@@ -107,18 +107,24 @@ double meeting(const Landmark& a, const Landmark& b) {
   return std::abs(slope) < 1e-9 ? 0.0 : -fb.distance(fa.origin) / slope;
 }
 
-/// The length of a wall depends on its neighbours too; an end that meets nobody adds the noise of one contact.
+/// The length of a wall depends on the walls that it meets too; an end that meets none adds what is not known of it.
 void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls, const FiniteWall& wall,
-                    const graph::Marginals& marginals, const MapperConfig& config, MapObject& object) {
+                    const graph::Marginals& marginals, MapObject& object) {
   std::vector<std::size_t> involved{wall.landmark};
-  if (wall.previous) involved.push_back(walls[*wall.previous].landmark);
-  if (wall.next && wall.next != wall.previous) involved.push_back(walls[*wall.next].landmark);
+  const auto meets = [&](const WallEnd& end) -> std::optional<std::size_t> {
+    if (end.kind != EndKind::Corner) return std::nullopt;
+    const std::size_t landmark = walls[*end.neighbour].landmark;
+    const auto at = std::find(involved.begin(), involved.end(), landmark);
+    const auto index = static_cast<std::size_t>(at - involved.begin());
+    if (at == involved.end()) involved.push_back(landmark);
+    return index;
+  };
+  const auto at_tail = meets(wall.tail), at_head = meets(wall.head);
   std::vector<Landmark> values;
   for (const std::size_t k : involved) values.push_back(state.graph.landmarks[k]);
-  const std::size_t next_at = wall.next == wall.previous ? 1 : involved.size() - 1;
   const auto length = [&](const std::vector<Landmark>& x) {
-    const double tail = wall.previous ? meeting(x[0], x[1]) : wall.tail;
-    const double head = wall.next ? meeting(x[0], x[next_at]) : wall.head;
+    const double tail = at_tail ? meeting(x[0], x[*at_tail]) : wall.tail.s;
+    const double head = at_head ? meeting(x[0], x[*at_head]) : wall.head.s;
     return head - tail;
   };
   const auto n = static_cast<Eigen::Index>(2 * values.size());
@@ -132,8 +138,7 @@ void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls,
   }
   const Eigen::MatrixXd covariance = covariance_of(marginals, involved);
   double variance = (j * covariance * j.transpose())(0, 0);
-  for (const bool open : {!wall.previous, !wall.next})
-    if (open) variance += config.hand.contact_sigma_m * config.hand.contact_sigma_m;
+  for (const WallEnd& end : {wall.tail, wall.head}) variance += end.sigma_m * end.sigma_m;
   object.sigma.size_m = {std::sqrt(std::max(0.0, variance)), 0.0};
   object.sigma.heading_rad = sigma_of(covariance, 0);
   object.sigma.position_m = sigma_of(covariance, 1);
@@ -177,7 +182,7 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
         add_record(state.landmarks[other], object);
         add_visits(state, other, object);
       }
-      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, config, object);
+      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, object);
     } else {
       if (landmark.kind == LandmarkKind::Table) describe_table(landmark, object);
       if (landmark.kind == LandmarkKind::Screen) describe_screen(landmark, object);

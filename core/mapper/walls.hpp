@@ -1,34 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
-#include "core/map.hpp"
 #include "core/mapper/config.hpp"
 #include "core/mapper/state.hpp"
 
 namespace kinemap {
 
-/// A wall cut to its finite part: coordinates along its WallFrame, m.
+/// Why a wall ends where it does.
+enum class EndKind : std::uint8_t {
+  Touched,  ///< there the hand last touched it; nobody knows what comes then
+  Corner,   ///< it meets the next wall
+  Inferred  ///< it meets a wall that nobody touched, but that must be there
+};
+
+/// One end of a finite wall.
+struct WallEnd {
+  double s = 0.0;  ///< coordinate along the wall's WallFrame, m
+  EndKind kind = EndKind::Touched;
+  std::optional<std::size_t> neighbour;  ///< index of the wall that comes next; an inferred one may lie in between
+  double sigma_m = 0.0;                  ///< what the end adds to the uncertainty of the wall's length
+};
+
+/// A wall cut to its finite part.
 struct FiniteWall {
   std::size_t landmark = 0;            ///< gives the plane: of several stretches of one wall the longest
   std::vector<std::size_t> stretches;  ///< all landmarks that make up the wall, that one included, from tail to head
-  double tail = 0.0;                   ///< where it begins, going counter-clockwise round its room
-  double head = 0.0;
-  std::optional<std::size_t> next;  ///< index of the wall whose tail its head meets
-  std::optional<std::size_t> previous;
+  WallEnd tail;                        ///< where it begins, going counter-clockwise round its room
+  WallEnd head;
+
+  [[nodiscard]] double length() const { return head.s - tail.s; }
 };
 
 /// Cuts the infinite planes of the walls at their intersections (paper, section IV). Each wall has a head and a tail
 /// (room on the left); heads are joined to tails one to one such that the walls are prolonged and shortened least in
-/// sum. A head only ever meets a tail, so outer corners, inner corners of L-shapes and the two faces of a partition
-/// come out of the same rule. An end that meets nobody stays where the hand last touched.
+/// sum and every closed ring is a room: counter-clockwise, without crossing itself, with the wearer in it. Walls of
+/// rooms between which the wearer walked through a wall are never joined. A head only ever meets a tail, so outer
+/// corners, inner corners of L-shapes and the two faces of a partition come out of the same rule. Where two parallel
+/// walls lack the one between them, it is inferred from what stands in front of it. An end that meets nobody stays
+/// where the hand last touched.
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config);
-
-/// Closed rings of joined walls, counter-clockwise. Ids count from 1.
-std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall>& walls,
-                             const MapperConfig::Walls& config);
 
 }  // namespace kinemap

@@ -62,6 +62,11 @@ TEST(MapJson, RoundTrip) {
   EXPECT_FALSE(map->objects[3].size.has_value());
   EXPECT_NEAR(heading_of(map->objects[3].pose.q), 1.5707963, 1e-5);
   EXPECT_EQ(map->rooms[0].wall_ids, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(map->rooms[0].inferred_sides, (std::vector<std::size_t>{2, 3}));
+  ASSERT_EQ(map->doorways.size(), 1U);
+  EXPECT_EQ(map->doorways[0].position, Eigen::Vector2d(4.0, 1.2));
+  EXPECT_EQ(map->doorways[0].heading_rad, 3.14);
+  EXPECT_EQ(map->doorways[0].room_ids, std::vector<std::uint32_t>{1});
   EXPECT_EQ(map->graph.contacts, 120U);
   EXPECT_EQ(map_text(*map), text) << "what was read is written again byte for byte";
 }

@@ -55,7 +55,8 @@ inline MapSnapshot sample_map() {
   chair.observations = 4;
 
   map.objects = {wall, table, screen, chair};
-  map.rooms = {{1, {{0, 0}, {4, 0}, {4, 3}, {2, 3}, {2, 2}, {0, 2}}, 10.0, 2.5, true, {1}}};
+  map.rooms = {{1, {{0, 0}, {4, 0}, {4, 3}, {2, 3}, {2, 2}, {0, 2}}, 10.0, 2.5, true, {1}, {2, 3}}};
+  map.doorways = {{{4.0, 1.2}, 3.14, {1}}};
   for (KeyPoseId i = 0; i < 4; ++i) {
     const double x = 0.5 + 0.25 * i;
     map.trajectory.push_back({i, 0.5 * i, level_pose({x, 1.0, 0.95}, 0.1), level_pose({x, 1.1, 0.96}, 0.2)});

@@ -13,15 +13,18 @@ namespace {
 using graph::LandmarkKind;
 
 constexpr double kMinAngle = 0.35;        // rad: flatter intersections are no corners
-constexpr double kShortening = 3.0;       // a wall that was touched beyond the corner speaks louder than a gap
-constexpr double kMaxShortening = 0.4;    // m: what drift and a hand on its way may make of it
+constexpr double kShortening = 5.0;       // a wall that was touched beyond the corner speaks louder than a gap
+constexpr double kMaxShortening = 0.7;    // m: what drift and a hand on its way may make of it
 constexpr double kMinLength = 0.2;        // m
 constexpr double kSameHeading = 0.15;     // rad: stretches of one wall agree so well
 constexpr double kSamePlane = 0.25;       // m
 constexpr double kOffPlaneCost = 4.0;     // a metre off the plane speaks as loud as so many metres of gap
 constexpr double kStraightCost = 0.5;     // a true corner is preferred to a continuation
-constexpr double kInnerCornerCost = 0.3;  // outer corners are commoner than inner ones
-constexpr double kCrossingCost = 1.0;     // the wearer walked through the prolonged part: a doorway, or no wall
+constexpr double kInnerCornerCost = 0.8;  // outer corners are commoner than inner ones
+constexpr double kDoorway = 0.9;          // m: the wearer walks through a doorway within so much of it ...
+constexpr double kDoorwayCost = 0.3;      // there is one in the prolonged part
+constexpr double kSpreadCost = 1.5;       // ... and drift widens it, but so much for a metre
+constexpr double kOpenFloorCost = 4.0;    // the wearer walked through the prolonged part here and there: no wall
 constexpr double kInferredCost = 2.0;     // that a wall was not touched at all
 constexpr double kCornerMargin = 0.25;    // m: so near to a corner others may seem to be crossed
 constexpr double kStep = 0.3;             // m: parallel walls farther apart than this have one between them
@@ -131,8 +134,9 @@ Join Joiner::inferred(const Stretch& a, const Stretch& b) const {
   }
   if (behind > -HUGE_VAL) d = behind, sigma = kFurnitureSigma;
   d = std::min(d, std::max(limit, touched));
+  const double inner = opposite ? 0.0 : kInnerCornerCost;
   Join join{Join::Kind::Inferred, meets(a, out, d), meets(b, out, d), 0.0, sigma};
-  join.cost = kInferredCost + prolonging_cost(std::abs(join.head_s - a.touched.hi)) +
+  join.cost = kInferredCost + inner + prolonging_cost(std::abs(join.head_s - a.touched.hi)) +
               prolonging_cost(std::abs(b.touched.lo - join.tail_s));
   return join;
 }
@@ -147,7 +151,12 @@ double Joiner::obstruction(const Stretch& wall, double from, double to, const St
                    other.frame.point(other.touched.hi - trim).head<2>()))
       return HUGE_VAL;
   }
-  return passages(state_, wall.frame, from, to).empty() ? 0.0 : kCrossingCost;
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (const Passage& passage : passages(state_, wall.frame, from, to)) {
+    const double s = wall.frame.along({passage.p.x(), passage.p.y(), 0.0});
+    lo = std::min(lo, s), hi = std::max(hi, s);
+  }
+  return lo > hi ? 0.0 : std::min(kOpenFloorCost, kDoorwayCost + kSpreadCost * std::max(0.0, hi - lo - kDoorway));
 }
 
 Join Joiner::join(std::size_t a, std::size_t b) const {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/mapper/config.hpp"
+#include "core/mapper/missing_wall.hpp"
 #include "core/mapper/stretches.hpp"
 
 namespace kinemap {
@@ -24,7 +24,7 @@ struct Join {
   double sigma_m = 0.0;                                   ///< of the inferred wall's plane
 };
 
-/// Judges which heads may meet which tails.
+/// Judges which heads may meet which tails. Refers to what it was made of.
 class Joiner {
  public:
   Joiner(const MapState& state, const TouchedWalls& walls, const MapperConfig::Walls& config);
@@ -38,23 +38,16 @@ class Joiner {
   static constexpr double kOpenCost = 6.5;
 
  private:
-  /// A point of the room before a wall that nobody touched, and how far behind it the wall stands at least.
-  struct Content {
-    Eigen::Vector3d p;
-    double margin = 0.0, sigma = 0.0;
-    std::size_t zone = 0;
-    Eigen::Vector3d facing;  ///< screens: their normal; else zero
-  };
-
   [[nodiscard]] Join continuation(const Stretch& a, const Stretch& b) const;
   [[nodiscard]] Join inferred(const Stretch& a, const Stretch& b) const;
+  /// What speaks against `wall` going on from `from` to `to`, m: what was touched cuts it, or the wearer walked
+  /// through.
   [[nodiscard]] double obstruction(const Stretch& wall, double from, double to, const Stretch& neighbour) const;
-  void collect_contents(const std::vector<std::size_t>& zone_of_pose);
 
   const MapState& state_;
   const std::vector<Stretch>& walls_;
+  MissingWalls missing_;
   double join_max_;
-  std::vector<Content> contents_;
 };
 
 }  // namespace kinemap

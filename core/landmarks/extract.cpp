@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/landmarks/geometry.hpp"
+#include "core/landmarks/sides.hpp"
 
 namespace kinemap {
 namespace {
@@ -14,12 +15,15 @@ using graph::Landmark;
 using graph::LandmarkKind;
 
 constexpr double kMinLeftover = 3.0;   // s
+constexpr double kMostOfIt = 0.75;     // of the contacts lie on sides where sides were drawn
+constexpr double kLongestPart = 2.5;   // m: longer is a wall, whatever else the hand did
 constexpr double kSecondChoice = 0.8;  // part of the trace that the surface that holds less of it must still hold
 
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
-  bool round_wearer = false;  ///< a level contour with the wearer inside: walls
+  bool round_wearer = false;    ///< a level contour with the wearer inside: walls
+  bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
 };
 
 /// Members of the surface in its plane: first axis `u`, second `v`, from `origin`.
@@ -72,22 +76,43 @@ Attempt table(std::span<const TracePoint> points, const Surface& surface, double
   return {seen, {}};
 }
 
+/// Level and plumb strokes as long as the sides, and hardly anything else: a part of a screen's contour. A hand that
+/// waves on its way along a wall goes aslant.
+bool drawn_in_strokes(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
+  constexpr double kWindow = 0.05, kAlong = 0.95;  // m; cosine
+  const auto travel = travel_directions(flat, kWindow);
+  double level = 0.0, plumb = 0.0, total = 0.0;
+  for (std::size_t i = 1; i < flat.size(); ++i) {
+    const double step = (flat[i] - flat[i - 1]).norm();
+    total += step;
+    if (std::abs(travel[i].x()) > kAlong) level += step;
+    if (std::abs(travel[i].y()) > kAlong) plumb += step;
+  }
+  return level + plumb > kMostOfIt * total && level > kMostOfIt * fit.size[0] && plumb > kMostOfIt * fit.size[1] &&
+         std::max(fit.size[0], fit.size[1]) < kLongestPart && fit.size[1] > 0.25 * fit.size[0];
+}
+
 Attempt screen(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
   const double heading = std::atan2(surface.normal.y(), surface.normal.x());
   const Eigen::Vector3d u(-std::sin(heading), std::cos(heading), 0.0);
   const Eigen::Vector3d foot = surface.offset * surface.normal;
   const auto flat = in_plane(points, surface, foot, u, Eigen::Vector3d::UnitZ());
   const auto fit = fit_rectangle(flat, config, 0.0);
-  // A contour that goes round and comes back to where it began: a hand that waves along a wall does not.
-  if (!fit || std::count(fit->drawn.begin(), fit->drawn.end(), true) < 3 ||
-      std::abs(winding(flat, fit->centre)) < 1.4 * std::numbers::pi ||
-      (flat.front() - flat.back()).norm() > 0.1 + 0.55 * std::max(fit->size[0], fit->size[1]))
-    return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
-  const double worst = 0.03 + 0.06 * std::min(fit->size[0], fit->size[1]);
+  constexpr const char* kNeither = "an upright surface, but no closed contour and too short for a wall";
+  if (!fit) return {std::nullopt, kNeither};
   const auto labelled = std::count_if(fit->labels.begin(), fit->labels.end(),
                                       [](const SideLabel& l) { return l.edge != graph::Edge::None; });
-  if (fit->rms > worst || 2 * static_cast<std::size_t>(labelled) < flat.size())
-    return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
+  const double share = static_cast<double>(labelled) / static_cast<double>(flat.size());
+  const bool clean = fit->rms <= 0.03 + 0.06 * std::min(fit->size[0], fit->size[1]);
+  // A contour that goes round and comes back to where it began: a hand that waves along a wall does not.
+  if (std::count(fit->drawn.begin(), fit->drawn.end(), true) < 3 ||
+      std::abs(winding(flat, fit->centre)) < 1.4 * std::numbers::pi ||
+      (flat.front() - flat.back()).norm() > 0.1 + 0.55 * std::max(fit->size[0], fit->size[1])) {
+    if (clean && share > kMostOfIt && drawn_in_strokes(flat, *fit))
+      return {std::nullopt, "an open contour on an upright surface: a part of a screen's", false, true};
+    return {std::nullopt, kNeither};
+  }
+  if (!clean || share < 0.5) return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Screen;
   const Eigen::Vector3d centre = foot + fit->centre.x() * u + fit->centre.y() * Eigen::Vector3d::UnitZ();
@@ -98,7 +123,17 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
   return {seen, {}};
 }
 
-Attempt wall(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
+/// A straight line at one height, as low as tables are: one edge of a table as likely as a wall.
+bool may_be_table_edge(std::span<const TracePoint> points, const Surface& surface, double floor_z, double length) {
+  constexpr double kHighest = 0.95, kLongest = 2.5, kSpread = 0.04;  // m
+  std::vector<double> heights, off;
+  for (const std::size_t i : surface.members) heights.push_back(points[i].p.z() - floor_z);
+  const double height = median(heights);
+  for (const double h : heights) off.push_back(std::abs(h - height));
+  return height < kHighest && length < kLongest && 1.48 * median(std::move(off)) < kSpread;
+}
+
+Attempt wall(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
   const Eigen::Vector3d along(-surface.normal.y(), surface.normal.x(), 0.0);
   const double apart = std::abs(along.dot(points[surface.members.back()].p - points[surface.members.front()].p));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
@@ -110,6 +145,8 @@ Attempt wall(std::span<const TracePoint> points, const Surface& surface, const L
   // anywhere.
   if (apart < config.wall_min_extent_m || apart < 0.4 * (hi - lo))
     return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
+  if (may_be_table_edge(points, surface, floor_z, hi - lo))
+    return {std::nullopt, "a straight level line at the height of a table: one edge of it, or a wall"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Wall;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -129,7 +166,7 @@ Attempt classify(std::span<const TracePoint> points, const Surface& surface, dou
     return {std::nullopt, "the surface leans: neither level nor upright"};
   if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
   auto contour = screen(points, surface, config);
-  return contour.observation ? contour : wall(points, surface, config);
+  return contour.observation || contour.part_of_screen ? contour : wall(points, surface, floor_z, config);
 }
 
 void shift(Observation& observation, std::size_t by) {

@@ -7,6 +7,7 @@
 #include "core/mapper/observe.hpp"
 #include "core/mapper/odometry.hpp"
 #include "core/mapper/publish.hpp"
+#include "core/mapper/resolve.hpp"
 #include "core/mapper/rooms.hpp"
 #include "core/mapper/walls.hpp"
 
@@ -14,7 +15,8 @@ namespace kinemap {
 
 class Mapper::Impl {
  public:
-  explicit Impl(const MapperConfig& config) : config_(config), odometry_(config.odometry), closer_(config) {
+  explicit Impl(const MapperConfig& config)
+      : config_(config), odometry_(config.odometry), resolver_(config.landmarks), closer_(config) {
     state_.graph.touch_points.push_back(touch_point(config.hand, {}, std::nullopt));
   }
 
@@ -31,11 +33,12 @@ class Mapper::Impl {
   bool add(const Trace& trace) {
     time_s_ = trace.end_s;
     expect_touch(touch_point(config_.hand, wearer_, trace.stature_m));
-    const auto points = trace_points(trace, state_.graph, kTouch);
-    const auto extraction = extract_landmarks(points, odometry_.floor_z(), config_.landmarks);
-    if (extraction.observations.empty()) unresolved_.push_back({trace.begin_s, trace.end_s, extraction.reason});
-    for (const auto& observation : extraction.observations)
-      associate(add_observation(observation, trace, points, kTouch, odometry_.floor_z(), config_, state_));
+    const auto found = resolver_.resolve(trace, state_.graph, kTouch, odometry_.floor_z());
+    if (found.joined) unresolved_.pop_back();  // the trace before was its beginning
+    if (found.extraction.observations.empty())
+      unresolved_.push_back({trace.begin_s, trace.end_s, found.extraction.reason});
+    for (const auto& observation : found.extraction.observations)
+      associate(add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
     publish();
     return true;
   }
@@ -105,6 +108,7 @@ class Mapper::Impl {
   MapperConfig config_;
   WearerInfo wearer_;
   Odometry odometry_;
+  TraceResolver resolver_;
   LoopCloser closer_;
   MapState state_;
   std::vector<UnresolvedTrace> unresolved_;

@@ -86,6 +86,9 @@ TEST(Topology, ARoomWithAnUntouchedWallIsNotAsked) {
   const TopologyCheck result = check(map, truth);
   EXPECT_TRUE(result.right());
   EXPECT_EQ(result.rooms, 0U);
+  map.rooms.push_back({});  // the missing wall was inferred
+  map.rooms[0].wall_ids = {11, 13, 14};
+  EXPECT_TRUE(check(map, truth).right());
   EXPECT_EQ(unknown_ends(truth, 1), 1U);
   EXPECT_EQ(unknown_ends(truth, 4), 0U);
 }

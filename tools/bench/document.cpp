@@ -117,11 +117,10 @@ void limits(Document& document, const Study& study) {
   document.add(
       "## What the suit does not tell\n\nWhere a wall ends: that is where it meets the next, and when nobody ever "
       "touched "
-      "the next, only the part that was touched is known. And scale: a closed loop that is a little too long is still "
-      "a "
-      "closed loop, so no closure sees a wrong step length; the last column takes the scale of each session's "
-      "trajectory "
-      "(true over estimated extent) out of its walls.\n\n" +
+      "the next, its end can only be inferred. And scale: a closed loop that is a little too long is still a closed "
+      "loop, "
+      "so no closure sees a wrong step length; the last column takes the scale of each session's trajectory (true over "
+      "estimated extent) out of its walls.\n\n" +
       scale_table(study.columns) + '\n');
 }
 
@@ -138,7 +137,7 @@ std::optional<Error> worst(Document& document, const Study& study) {
   const auto notes = document.notes();
   if (!notes) return Error{notes.error()};
   document.add(
-      "## The worst five\n\nThe largest relative errors of all sessions, one from each session at most. Truth in grey "
+      "## The worst five\n\nThe largest relative errors of all sessions, one from each seed at most. Truth in grey "
       "beneath the map; the object in question is underlined.\n\n");
   for (const WorstCase& one : worst_cases(study.columns, kWorstCases)) {
     const std::string name = case_name(one);

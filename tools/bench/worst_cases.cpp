@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "tools/kinemap/alignment.hpp"
 #include "tools/kinemap/text_table.hpp"
@@ -74,7 +75,7 @@ std::string wall_ends(const eval::TruthObject& truth, const MapObject& object, c
   return format(" One end is %+.2f m off along the wall, the other %+.2f m (+: too far out).", longer + shift,
                 longer - shift) +
          (unknown == 0 ? ""
-                       : format(" %s of its neighbours %s never touched, so nothing tells where it ends there.",
+                       : format(" %s of its neighbours %s never touched, so its end there can only be inferred.",
                                 unknown == 1 ? "One" : "Both", unknown == 1 ? "was" : "were"));
 }
 
@@ -132,6 +133,8 @@ std::vector<WorstCase> worst_cases(const std::vector<Column>& columns, std::size
   std::stable_sort(cases.begin(), cases.end(), [](const WorstCase& a, const WorstCase& b) {
     return a.match->mape_percent() > b.match->mape_percent();
   });
+  std::set<std::uint64_t> seeds;
+  std::erase_if(cases, [&](const WorstCase& one) { return !seeds.insert(one.session->sim.seed).second; });
   if (cases.size() > count) cases.resize(count);
   return cases;
 }

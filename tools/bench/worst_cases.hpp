@@ -16,8 +16,8 @@ struct WorstCase {
   const eval::Match* match = nullptr;
 };
 
-/// The `count` largest relative errors of edge lengths over all columns, at most one from each session: what spoils one
-/// wall spoils its neighbours too.
+/// The `count` largest relative errors of edge lengths over all columns, at most one from each seed: what spoils one
+/// wall spoils its neighbours too, in every column.
 std::vector<WorstCase> worst_cases(const std::vector<Column>& columns, std::size_t count);
 
 /// "default-seed7-wall5": names its picture and its note.

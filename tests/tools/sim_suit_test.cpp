@@ -60,8 +60,9 @@ TEST(SimSuit, StartsWhereTheWearerIs) {
 
 /// Median over seeds of the gap between the reported and the true pelvis when the first round ends, in the 3.9 × 8.7 m
 /// room. A round here is a working one: walls, tables, screens and chairs on the way, some 50–70 m walked in three to
-/// four minutes. A bare lap along the four walls (23 m, one minute) ends only about 0.3 m off with the same figures:
-/// too short for the heading to go wrong.
+/// four minutes. A bare lap along the four walls (21 m, half a minute) ends only 0.15–0.3 m off by the same table: bias
+/// and random walk turn the heading by 1–3° in that time, not by the 14° that 0.7 m need; those take four minutes, or
+/// metal on the way.
 double median_gap(Severity drift) {
   std::vector<double> gaps;
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {

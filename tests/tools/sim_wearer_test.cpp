@@ -146,6 +146,16 @@ TEST(SimWearer, EverySeedGivesAPlausibleSession) {
   }
 }
 
+/// Corner to corner, a wall's length is known only where its neighbours are touched as well.
+TEST(SimWearer, NearlyEveryWallIsTouched) {
+  std::size_t walls = 0, touched = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto session = session_of(seeded(seed));
+    for (const auto& wall : session->building().walls) ++walls, touched += session->script().visited.count(wall.id);
+  }
+  EXPECT_GT(static_cast<double>(touched), 0.9 * static_cast<double>(walls)) << touched << " of " << walls;
+}
+
 TEST(SimWearer, WalksLikeAPerson) {
   const auto session = session_of(seeded(6));
   std::vector<double> speeds, heights, steps;

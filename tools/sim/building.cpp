@@ -7,6 +7,7 @@ namespace kinemap::sim {
 
 namespace {
 
+constexpr double kShortestStretch = 0.8;
 constexpr double kUsualPartition = 0.12;  ///< between the two faces of a wall that parts two rooms, m
 
 /// A shell before it is joined to others: a rectangle, perhaps with one of its upper corners (large y) missing or with
@@ -186,6 +187,42 @@ double Building::clearance(const Vec2& p) const {
   }
   for (const auto& obstacle : obstacles) least = std::min(least, obstacle.distance(p));
   return least;
+}
+
+std::vector<Stretch> free_stretches(const Building& building, const WallFace& wall) {
+  std::vector<Stretch> blocked;
+  for (const auto& other : building.walls) {  // nobody fits into an acute corner
+    const bool after = other.room == wall.room && (other.a - wall.b).norm() < 1e-9;
+    const bool before = other.room == wall.room && (other.b - wall.a).norm() < 1e-9;
+    if (!after && !before) continue;
+    const Vec2 d = after ? wall.along() : other.along(), next = after ? other.along() : wall.along();
+    const double corner = kPi - std::atan2(cross(d, next), d.dot(next));
+    if (corner > radians(80.0)) continue;
+    const double margin = (0.3 + 0.45 * std::cos(corner)) / std::sin(corner) - 0.25;
+    blocked.push_back(after ? Stretch{wall.length() - margin, wall.length()} : Stretch{0.0, margin});
+  }
+  if (wall.doorway) blocked.push_back({wall.doorway->first - 0.06, wall.doorway->second + 0.06});
+  for (const auto& obstacle : building.obstacles) {
+    double low = 1e9, high = -1e9, near = 1e9, far = -1e9;
+    for (const auto& corner : obstacle.corners()) {
+      const double u = (corner - wall.a).dot(wall.along()), off = (corner - wall.a).dot(wall.inward());
+      low = std::min(low, u), high = std::max(high, u), near = std::min(near, off), far = std::max(far, off);
+    }
+    // What is flat on the wall stops the hand only, other things the body as well.
+    if (near < 0.70 && far > 0.0 && high > 0.0 && low < wall.length()) {
+      const double margin = far < 0.12 ? 0.05 : 0.33;
+      blocked.push_back({low - margin, high + margin});
+    }
+  }
+  std::sort(blocked.begin(), blocked.end(), [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
+  std::vector<Stretch> free;
+  double at = 0.0;
+  for (const auto& b : blocked) {
+    if (b.from - at >= kShortestStretch) free.push_back({at, b.from});
+    at = std::max(at, b.to);
+  }
+  if (wall.length() - at >= kShortestStretch) free.push_back({at, wall.length()});
+  return free;
 }
 
 Building make_building(const SimOptions& options, const Reach& reach, Random& random) {

@@ -42,6 +42,11 @@ struct WallFace {
   [[nodiscard]] Vec2 inward() const { return left_of(along()); }
 };
 
+/// A part of a wall's face.
+struct Stretch {
+  double from = 0.0, to = 0.0;  ///< metres from the face's start
+};
+
 struct Table {
   int id = 0;
   int room = 0;
@@ -98,6 +103,9 @@ struct Building {
   /// Distance to the nearest wall or piece of furniture, m; 0 outside the open floor and inside furniture.
   [[nodiscard]] double clearance(const Vec2& p) const;
 };
+
+/// Parts of the face, of at least 0.8 m, that nothing keeps one from touching; in order.
+std::vector<Stretch> free_stretches(const Building& building, const WallFace& wall);
 
 /// How far the wearer can touch: nothing that is to be touched lies beyond.
 struct Reach {

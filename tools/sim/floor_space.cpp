@@ -3,7 +3,7 @@
 
 namespace kinemap::sim {
 
-FloorSpace::FloorSpace(const Building& building, Random& random) : b_(building), random_(random) {
+FloorSpace::FloorSpace(Building& building, Random& random) : b_(building), random_(random) {
   for (const auto& door : b_.doorways) keep_free({door.centre, door.heading, {1.0, 0.75}});
 }
 
@@ -35,6 +35,18 @@ double FloorSpace::gap_to_walls(int room, const Footprint& f, const WallFace* ex
     least = std::min(least, gap(f, line));
   }
   return least;
+}
+
+bool FloorSpace::settle(int room, const std::vector<Footprint>& pieces) {
+  const auto touchable = [&] {
+    return std::count_if(b_.walls.begin(), b_.walls.end(),
+                         [&](const WallFace& wall) { return wall.room == room && !free_stretches(b_, wall).empty(); });
+  };
+  const auto before = touchable();
+  b_.obstacles.insert(b_.obstacles.end(), pieces.begin(), pieces.end());
+  if (touchable() == before) return true;
+  b_.obstacles.resize(b_.obstacles.size() - pieces.size());
+  return false;
 }
 
 std::optional<WallSpot> FloorSpace::draw_spot(int room, double half_length) {

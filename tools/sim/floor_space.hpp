@@ -16,7 +16,7 @@ class FloorSpace {
  public:
   static constexpr double kWalkway = 0.85;  ///< free breadth around what one walks round, m
 
-  FloorSpace(const Building& building, Random& random);
+  FloorSpace(Building& building, Random& random);
 
   /// Nothing may stand there from now on.
   void keep_free(const Footprint& zone) { keep_free_.push_back(zone); }
@@ -27,6 +27,9 @@ class FloorSpace {
   [[nodiscard]] double gap_to_furniture(const Footprint& f) const;
   [[nodiscard]] double gap_to_walls(int room, const Footprint& f, const WallFace* except) const;
 
+  /// Puts these pieces there, as obstacles; unless one of the room's walls could no longer be touched then.
+  bool settle(int room, const std::vector<Footprint>& pieces);
+
   /// A place along a wall of the room for something of this half length; nullopt when every wall is too short.
   std::optional<WallSpot> draw_spot(int room, double half_length);
   /// Draws a place for `f` (its size is given): along a wall, perhaps in a corner, or freely with a way around it. One
@@ -35,7 +38,7 @@ class FloorSpace {
   bool place_freely(int room, Footprint& f);
 
  private:
-  const Building& b_;
+  Building& b_;
   Random& random_;
   std::vector<Footprint> keep_free_;
 };

@@ -69,9 +69,9 @@ class Furnisher {
       const bool freely = free_standing == (i < kTries / 2);  // the other way when there is no room
       if (!(freely ? space_.place_freely(room, table.top) : space_.place_at_wall(room, table.top))) continue;
       if (!space_.keeps_free(table.top) || space_.gap_to_furniture(table.top) < kWalkway) continue;
+      if (!space_.settle(room, {table.top})) continue;
       table.height = random_.uniform(0.70, 0.78);
       b_.tables.push_back(table);
-      b_.obstacles.push_back(table.top);
       return true;
     }
     return false;
@@ -105,8 +105,8 @@ class Furnisher {
           space_.gap_to_furniture(body) < kWalkway)
         continue;
       if (space_.gap_to_furniture(before) < 0.05) continue;
+      if (!space_.settle(room, {body})) continue;
       b_.screens.push_back(screen);
-      b_.obstacles.push_back(body);
       space_.keep_free(before);
       return true;
     }
@@ -171,8 +171,8 @@ class Furnisher {
       if (space_.gap_to_walls(room, body, at_wall ? spot->wall : nullptr) < 0.6 || space_.gap_to_furniture(feet) < 0.25)
         continue;
       if (space_.gap_to_walls(room, feet, nullptr) < 0.15) continue;
+      if (!space_.settle(room, {body})) continue;
       b_.chairs.push_back(chair);
-      b_.obstacles.push_back(body);
       space_.keep_free(feet);
       return true;
     }

@@ -34,12 +34,14 @@ bool add_twin_tables(Building& building, FloorSpace& space, int room, Random& ra
     const double gap = random.chance(0.65) ? random.uniform(0.10, 0.30) : random.uniform(0.85, 1.05);
     Footprint group{{0, 0}, 0.0, {2 * table.top.half.x() + gap / 2, table.top.half.y()}};
     if (!place(space, room, group, 0.5, random)) return false;
-    for (const double side : {-1.0, 1.0}) {
-      table.top.heading = group.heading;
-      table.top.centre = group.centre + direction(group.heading) * side * (table.top.half.x() + gap / 2);
-      building.tables.push_back(table);
-      building.obstacles.push_back(table.top);
-    }
+    table.top.heading = group.heading;
+    Table twin = table;
+    const Vec2 aside = direction(group.heading) * (table.top.half.x() + gap / 2);
+    table.top.centre = group.centre - aside;
+    twin.top.centre = group.centre + aside;
+    if (!space.settle(room, {table.top, twin.top})) return false;
+    building.tables.push_back(table);
+    building.tables.push_back(twin);
     return true;
   });
 }
@@ -60,12 +62,16 @@ bool add_chair_row(Building& building, FloorSpace& space, int room, Random& rand
     Chair chair;
     chair.room = room;
     chair.height = random.uniform(0.42, 0.50);
+    std::vector<Chair> chairs;
+    std::vector<Footprint> bodies;
     for (int k = 0; k < count; ++k) {
       chair.seat = middle + along * (spacing * k - half);
       chair.heading = heading_of(in) + random.normal(0.03);
-      building.chairs.push_back(chair);
-      building.obstacles.push_back({chair.seat, chair.heading, {0.22, 0.22}});
+      chairs.push_back(chair);
+      bodies.push_back({chair.seat, chair.heading, {0.22, 0.22}});
     }
+    if (!space.settle(room, bodies)) return false;
+    building.chairs.insert(building.chairs.end(), chairs.begin(), chairs.end());
     space.keep_free(feet);
     return true;
   });
@@ -92,13 +98,13 @@ bool add_twin_screens(Building& building, FloorSpace& space, const Reach& reach,
       const Vec2 out = left_of(along) * side;
       const Vec2 middle = table.top.centre + out * (table.top.half.y() - depth);
       if (building.clearance(table.top.centre + out * (table.top.half.y() + 0.5)) < 0.35) continue;
+      if (!space.settle(room, {table.top})) return false;
       screen.heading = heading_of(out);
       for (const double k : {-0.5, 0.5}) {
         screen.centre = lift(middle + along * (k * apart), table.height + 0.1 + screen.height / 2);
         building.screens.push_back(screen);
       }
       building.tables.push_back(table);
-      building.obstacles.push_back(table.top);
       return true;
     }
     return false;

@@ -113,10 +113,11 @@ class Tour {
       for (const auto& stop : in_order(room)) {
         if (this_round_.count(stop.id) != 0 && random_.chance(0.8)) continue;  // drawn together with another one
         const bool wall = stop.kind == Stop::Kind::Wall;
-        const double wanted = round > 0 ? share : late(room) ? (wall ? 0.85 : 0.6) : wall ? 1.0 : 0.97;
-        if (round == 0 && composer_.now() > 0.82 * kLongest_s) continue;  // time for a second round must be left
+        // A wall whose neighbour was never touched has no length that anybody could know.
+        const double wanted = round > 0 ? share : wall ? 1.0 : late(room) ? 0.6 : 0.97;
+        if (round == 0 && composer_.now() > (wall ? 0.78 : 0.68) * kLongest_s) continue;  // time for a second round
         const bool first_seat = stop.kind == Stop::Kind::Chair && !sat_;
-        if (composer_.now() > kLongest_s - 28.0 || (!random_.chance(wanted) && !first_seat)) continue;
+        if (composer_.now() > kLongest_s - 32.0 || (!random_.chance(wanted) && !first_seat)) continue;
         if (!may_touch(stop.id)) {
           walk_past(stop);
           continue;

@@ -6,39 +6,6 @@ namespace kinemap::sim {
 
 namespace {
 
-constexpr double kShortestStretch = 0.8;
-
-struct Stretch {
-  double from = 0.0, to = 0.0;  ///< metres from the face's start
-};
-
-/// Parts of the face that nothing keeps one from touching.
-std::vector<Stretch> free_stretches(const Building& building, const WallFace& wall) {
-  std::vector<Stretch> blocked;
-  if (wall.doorway) blocked.push_back({wall.doorway->first - 0.06, wall.doorway->second + 0.06});
-  for (const auto& obstacle : building.obstacles) {
-    double low = 1e9, high = -1e9, near = 1e9, far = -1e9;
-    for (const auto& corner : obstacle.corners()) {
-      const double u = (corner - wall.a).dot(wall.along()), off = (corner - wall.a).dot(wall.inward());
-      low = std::min(low, u), high = std::max(high, u), near = std::min(near, off), far = std::max(far, off);
-    }
-    // What is flat on the wall stops the hand only, other things the body as well.
-    if (near < 0.70 && far > 0.0 && high > 0.0 && low < wall.length()) {
-      const double margin = far < 0.12 ? 0.05 : 0.33;
-      blocked.push_back({low - margin, high + margin});
-    }
-  }
-  std::sort(blocked.begin(), blocked.end(), [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
-  std::vector<Stretch> free;
-  double at = 0.0;
-  for (const auto& b : blocked) {
-    if (b.from - at >= kShortestStretch) free.push_back({at, b.from});
-    at = std::max(at, b.to);
-  }
-  if (wall.length() - at >= kShortestStretch) free.push_back({at, wall.length()});
-  return free;
-}
-
 /// Hand waving up and down between 0.9 and 1.6 m on its way, at about `speed` m/s.
 std::vector<ContourSample> wall_samples(Composer& composer, const WallFace& wall, const Stretch& stretch,
                                         double speed) {

@@ -19,7 +19,7 @@ constexpr double kShySigma = 0.15;        // m
 constexpr double kFlush = 0.02;           // m: a table stands so near to the wall behind it
 constexpr double kScreenDepth = 0.06;     // m: a screen hangs so far before its wall
 constexpr double kFurnitureSigma = 0.08;  // m
-constexpr double kBody = 0.25;            // m: half of a wearer who stands with the back to the wall
+constexpr double kBeside = 0.7;           // m: furniture begins so near to where the hand had to stop
 constexpr double kThickness = 0.13;       // m: of a partition of which one face was touched
 
 }  // namespace
@@ -43,37 +43,31 @@ struct MissingWalls::Gap {
 
 MissingWalls::MissingWalls(const MapState& state, const TouchedWalls& walls) : walls_(walls.stretches) {
   for (const auto& visit : state.observations) {
-    const std::size_t zone = walls.zone_of_pose[visit.key_pose];
-    for (std::size_t c = visit.first_contact; c < visit.first_contact + visit.contacts; ++c)
-      places_.push_back({state.graph.poses[state.graph.contacts[c].i].p, zone});
     const auto& landmark = state.graph.landmarks[visit.landmark];
     if (landmark.kind != LandmarkKind::Table && landmark.kind != LandmarkKind::Screen) continue;
     const Pose T_map_rectangle = graph::landmark_pose(landmark);
-    Eigen::Vector3d facing = Eigen::Vector3d::Zero();
-    if (landmark.kind == LandmarkKind::Screen) facing = T_map_rectangle.q * Eigen::Vector3d::UnitZ();
-    for (const double u : {-0.5, 0.5})
-      for (const double v : {-0.5, 0.5})
-        furniture_.push_back(
-            {T_map_rectangle * Eigen::Vector3d(u * landmark.x[4], v * landmark.x[5], 0.0), facing, zone});
+    Furniture thing{{}, Eigen::Vector3d::Zero(), walls.zone_of_pose[visit.key_pose]};
+    if (landmark.kind == LandmarkKind::Screen) thing.facing = T_map_rectangle.q * Eigen::Vector3d::UnitZ();
+    const double u = 0.5 * landmark.x[4], v = 0.5 * landmark.x[5];
+    thing.corners = {T_map_rectangle * Eigen::Vector3d(u, v, 0.0), T_map_rectangle * Eigen::Vector3d(-u, v, 0.0),
+                     T_map_rectangle * Eigen::Vector3d(-u, -v, 0.0), T_map_rectangle * Eigen::Vector3d(u, -v, 0.0)};
+    furniture_.push_back(thing);
   }
 }
 
 double MissingWalls::furniture(const Gap& gap) const {
   double farthest = -HUGE_VAL;
   for (const Furniture& thing : furniture_) {
-    if (thing.zone != gap.a.zone || !gap.holds(thing.corner)) continue;
+    if (thing.zone != gap.a.zone) continue;
     const bool hangs = thing.facing.dot(gap.out) < -std::cos(kParallel);
-    const double at = gap.out.dot(thing.corner) + (hangs ? kScreenDepth : kFlush);
-    if (at < gap.limit + kTolerance) farthest = std::max(farthest, at);
-  }
-  return farthest;
-}
-
-double MissingWalls::wearer(const Gap& gap) const {
-  double farthest = -HUGE_VAL;
-  for (const Place& place : places_) {
-    const double at = gap.out.dot(place.p) + kBody;
-    if (place.zone == gap.a.zone && gap.holds(place.p) && at < gap.limit) farthest = std::max(farthest, at);
+    double near = HUGE_VAL, far = -HUGE_VAL;
+    bool between = true;
+    for (const Eigen::Vector3d& corner : thing.corners) {
+      const double at = gap.out.dot(corner) + (hangs ? kScreenDepth : kFlush);
+      near = std::min(near, at), far = std::max(far, at);
+      between = between && gap.holds(corner);
+    }
+    if (between && near < gap.touched + kBeside && far < gap.limit + kTolerance) farthest = std::max(farthest, far);
   }
   return farthest;
 }
@@ -114,7 +108,7 @@ std::optional<MissingWall> MissingWalls::between(const Stretch& a, const Stretch
   } else if (things > gap.touched) {
     wall.offset = things;
   } else {
-    wall.offset = std::max(gap.touched + kShyOfCorner, wearer(gap)), wall.sigma_m = kShySigma;
+    wall.offset = gap.touched + kShyOfCorner, wall.sigma_m = kShySigma;
   }
   wall.offset = std::min(wall.offset, gap.limit);
   return wall;

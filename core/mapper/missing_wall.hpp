@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,9 +18,8 @@ struct MissingWall {
   bool step = false;     ///< between parallel walls, else between opposite ones
 };
 
-/// Infers missing walls from what is in the rooms. It stands behind the ends that were touched, behind the places from
-/// which anything was touched and behind the furniture, which is mostly what kept the hand from it; and before what was
-/// touched from its other side.
+/// Infers missing walls from what is in the rooms. It stands behind the ends that were touched and behind the furniture
+/// beside them, which is mostly what kept the hand from it; and before what was touched from its other side.
 class MissingWalls {
  public:
   MissingWalls(const MapState& state, const TouchedWalls& walls);
@@ -30,25 +30,19 @@ class MissingWalls {
 
  private:
   struct Furniture {
-    Eigen::Vector3d corner;
+    std::array<Eigen::Vector3d, 4> corners;
     Eigen::Vector3d facing;  ///< screens: their normal; else zero
-    std::size_t zone = 0;
-  };
-  struct Place {
-    Eigen::Vector3d p;
     std::size_t zone = 0;
   };
   struct Gap;
 
-  /// How far out the farthest of the furniture and of the wearer's places reaches, m; −∞ where there is none.
+  /// How far out the furniture reaches that stands beside what was touched, m; −∞ where there is none.
   [[nodiscard]] double furniture(const Gap& gap) const;
-  [[nodiscard]] double wearer(const Gap& gap) const;
   /// How far out the inner face of a partition is whose other face was touched.
   [[nodiscard]] std::optional<double> partition(const Gap& gap) const;
 
   const std::vector<Stretch>& walls_;
   std::vector<Furniture> furniture_;
-  std::vector<Place> places_;
 };
 
 }  // namespace kinemap

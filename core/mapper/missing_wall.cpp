@@ -19,7 +19,7 @@ constexpr double kShySigma = 0.15;        // m
 constexpr double kFlush = 0.02;           // m: a table stands so near to the wall behind it
 constexpr double kScreenDepth = 0.06;     // m: a screen hangs so far before its wall
 constexpr double kFurnitureSigma = 0.08;  // m
-constexpr double kBeside = 0.7;           // m: furniture begins so near to where the hand had to stop
+constexpr double kBeside = 1.0;           // m: furniture begins so near to where hand and body had to stop
 constexpr double kThickness = 0.13;       // m: of a partition of which one face was touched
 
 }  // namespace

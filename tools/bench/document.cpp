@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 using cli::format;
 
 constexpr std::size_t kWorstCases = 5;
+constexpr std::size_t kWorstOfOne = 3;
 
 /// The Markdown in the making, and the pictures that it refers to.
 class Document {
@@ -133,22 +134,34 @@ void ablation(Document& document, const Study& study) {
   document.add(ablation_table(full, study.ablation) + '\n');
 }
 
+void describe(Document& document, const std::vector<WorstCase>& cases, const nlohmann::json& notes) {
+  for (const WorstCase& one : cases) {
+    const std::string name = case_name(one);
+    document.add(format("### %.0f %%: %s drift, seed %llu, %s %u\n\n", one.match->mape_percent(), one.drift.c_str(),
+                        static_cast<unsigned long long>(one.session->sim.seed), eval::to_string(one.match->klass),
+                        one.match->truth_id));
+    document.add(explain(one) + "\n\n");
+    if (notes.contains(name)) document.add(notes[name].get<std::string>() + "\n\n");
+    document.picture("worst-" + name, "Floor plan of the session", session_svg(*one.session, one.match->truth_id));
+  }
+}
+
 std::optional<Error> worst(Document& document, const Study& study) {
   const auto notes = document.notes();
   if (!notes) return Error{notes.error()};
   document.add(
       "## The worst five\n\nThe largest relative errors of all sessions, one from each seed at most. Truth in grey "
       "beneath the map; the object in question is underlined.\n\n");
-  for (const WorstCase& one : worst_cases(study.columns, kWorstCases)) {
-    const std::string name = case_name(one);
-    document.add(format("### %.0f %%: %s drift, seed %llu, %s %u\n\n", one.match->mape_percent(), one.drift.c_str(),
-                        static_cast<unsigned long long>(one.session->sim.seed), eval::to_string(one.match->klass),
-                        one.match->truth_id));
-    document.add(explain(one) + '\n');
-    if (notes->contains(name)) document.add('\n' + (*notes)[name].get<std::string>() + '\n');
-    document.add("\n");
-    document.picture("worst-" + name, "Floor plan of the session", session_svg(*one.session, one.match->truth_id));
-  }
+  const auto cases = worst_cases(study.columns, kWorstCases);
+  describe(document, cases, *notes);
+  const Column& usual = study.columns[study.ablated];
+  auto more = worst_cases(std::span(&usual, 1), kWorstOfOne);
+  std::erase_if(more, [&](const WorstCase& one) {
+    return std::any_of(cases.begin(), cases.end(), [&](const WorstCase& shown) { return shown.match == one.match; });
+  });
+  if (more.empty()) return std::nullopt;
+  document.add("## The worst of the " + usual.drift + " column\n\n");
+  describe(document, more, *notes);
   return std::nullopt;
 }
 

@@ -74,9 +74,9 @@ std::string wall_ends(const eval::TruthObject& truth, const MapObject& object, c
   const double shift = axis.dot((pose.p - truth.pose.p).head<2>()), longer = ((*object.size)[0] - truth.size[0]) / 2;
   return format(" One end is %+.2f m off along the wall, the other %+.2f m (+: too far out).", longer + shift,
                 longer - shift) +
-         (unknown == 0 ? ""
-                       : format(" %s of its neighbours %s never touched, so its end there can only be inferred.",
-                                unknown == 1 ? "One" : "Both", unknown == 1 ? "was" : "were"));
+         (unknown == 0   ? ""
+          : unknown == 1 ? " One of its neighbours was never touched, so its end there can only be inferred."
+                         : " Neither of its neighbours was ever touched, so its ends can only be inferred.");
 }
 
 std::string visits(const WorstCase& worst, const MapObject& object) {
@@ -120,7 +120,7 @@ std::string circumstances(const WorstCase& worst) {
 
 }  // namespace
 
-std::vector<WorstCase> worst_cases(const std::vector<Column>& columns, std::size_t count) {
+std::vector<WorstCase> worst_cases(std::span<const Column> columns, std::size_t count) {
   std::vector<WorstCase> cases;
   for (const Column& column : columns)
     for (const Session& session : column.sessions) {

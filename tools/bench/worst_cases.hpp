@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct WorstCase {
 
 /// The `count` largest relative errors of edge lengths over all columns, at most one from each seed: what spoils one
 /// wall spoils its neighbours too, in every column.
-std::vector<WorstCase> worst_cases(const std::vector<Column>& columns, std::size_t count);
+std::vector<WorstCase> worst_cases(std::span<const Column> columns, std::size_t count);
 
 /// "default-seed7-wall5": names its picture and its note.
 std::string case_name(const WorstCase& worst);

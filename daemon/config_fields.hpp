@@ -140,6 +140,8 @@ void fields(V& v, MapperConfig::Odometry& c) {
   v.number("translation_m_per_sqrt_s", c.translation_m_per_sqrt_s, Range{"m/√s", 1e-05, 1});
   v.number("vertical_m_per_sqrt_m", c.vertical_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
   v.number("heading_rad_per_sqrt_s", c.heading_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
+  v.number("magnetic_rad_per_sqrt_s", c.magnetic_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
+  v.number("magnetic_after_s", c.magnetic_after_s, Range{"s", 0, 3600});
   v.number("heading_rad_per_rad", c.heading_rad_per_rad, Range{"rad/rad", 0, 1});
   v.number("tilt_rad", c.tilt_rad, Range{"rad", 0.0001, 3.1416});
   v.number("floor_m", c.floor_m, Range{"m", 0.0001, 10});
@@ -170,7 +172,7 @@ template <class V>
 void fields(V& v, MapperConfig::Walls& c) {
   v.number("height_m", c.height_m, Range{"m", 0, 100});
   v.number("right_angle_sigma_rad", c.right_angle_sigma_rad, Range{"rad", 0, 1});
-  v.number("right_angle_max_rad", c.right_angle_max_rad, Range{"rad", 0, 3.1416});
+  v.number("oblique_share", c.oblique_share, Range{"1", 0.001, 0.9});
   v.number("join_max_m", c.join_max_m, Range{"m", 0, 100});
 }
 
@@ -181,11 +183,14 @@ void fields(V& v, MapperConfig::Association& c) {
   v.number("heading_sigma_rad", c.heading_sigma_rad, Range{"rad", 0.0001, 3.1416});
   v.number("size_sigma_m", c.size_sigma_m, Range{"m", 0.0001, 10});
   v.number("size_sigma_per_m", c.size_sigma_per_m, Range{"m/m", 0, 10});
-  v.number("wall_max_shift_m", c.wall_max_shift_m, Range{"m", 0, 100});
-  v.number("seat_max_shift_m", c.seat_max_shift_m, Range{"m", 0, 100});
-  v.number("table_max_shift_m", c.table_max_shift_m, Range{"m", 0, 100});
-  v.number("screen_max_shift_m", c.screen_max_shift_m, Range{"m", 0, 100});
+  v.number("wall_density_per_m", c.wall_density_per_m, Range{"1/m", 0.0001, 100});
+  v.number("table_density_per_m2", c.table_density_per_m2, Range{"1/m²", 0.0001, 100});
+  v.number("screen_density_per_m2", c.screen_density_per_m2, Range{"1/m²", 0.0001, 100});
+  v.number("seat_density_per_m2", c.seat_density_per_m2, Range{"1/m²", 0.0001, 100});
+  v.number("look_alike_share", c.look_alike_share, Range{"1", 0, 1});
+  v.number("min_evidence", c.min_evidence, Range{"1", -1000, 1000});
   v.number("max_cost_increase", c.max_cost_increase, Range{"1", 0, 1000000});
+  v.number("min_relief", c.min_relief, Range{"1", 0, 1000000});
   v.number("ambiguity", c.ambiguity, Range{"1", 0, 1000000});
 }
 

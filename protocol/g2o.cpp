@@ -233,7 +233,7 @@ void append(std::string& text, const graph::BetweenFactor& f) {
 }
 
 void append(std::string& text, const graph::Landmark& landmark) {
-  constexpr const char* kNames[] = {" wall", " table", " screen", " seat"};
+  constexpr const char* kNames[] = {" wall", " table", " screen", " seat", " direction"};
   text += kNames[static_cast<int>(landmark.kind)];
   append(text, graph::landmark_pose(landmark));
   if (landmark.kind == graph::LandmarkKind::Table || landmark.kind == graph::LandmarkKind::Screen) {

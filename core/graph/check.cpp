@@ -67,8 +67,9 @@ class Check {
       if (!landmark_exists(f.landmark, "contact factor", k)) return;
       require(f.touch < g_.touch_points.size(), "contact factor", k,
               "refers to a touch point that the graph does not have");
-      require(g_.landmarks[f.landmark].kind != LandmarkKind::Seat, "contact factor", k,
-              "is on a seat, which has no surface");
+      require(g_.landmarks[f.landmark].kind != LandmarkKind::Seat &&
+                  g_.landmarks[f.landmark].kind != LandmarkKind::Direction,
+              "contact factor", k, "is on a seat or direction, which has no surface");
       require(finite(f.T_i_hand) && positive(f.sigma_plane_m) && positive(f.sigma_edge_m) &&
                   positive(f.sigma_corner_m) && sound(f.loss),
               "contact factor", k, kBadNumbers);

@@ -102,6 +102,11 @@ Surface::Surface(LandmarkKind kind, const double* x, const Vector3d& anchor) : k
       du_ = -level, dv_ = Vector3d::Zero(), dw_ = left;
       origin_ = anchor + x[1] * level;
       return;
+    case LandmarkKind::Direction:
+      u_ = level, v_ = left, w_ = up;
+      du_ = left, dv_ = -level, dw_ = Vector3d::Zero();
+      origin_ = anchor;
+      return;
   }
   origin_ = Vector3d(x[0], x[1], x[2]);
 }

@@ -67,7 +67,9 @@ class Surface {
 };
 
 /// Index of the heading among a landmark's numbers.
-constexpr int heading_index(LandmarkKind kind) { return kind == LandmarkKind::Wall ? 0 : 3; }
+constexpr int heading_index(LandmarkKind kind) {
+  return kind == LandmarkKind::Wall || kind == LandmarkKind::Direction ? 0 : 3;
+}
 
 /// Value and derivative of a robust loss at the squared norm s: ρ(s), ρ'(s).
 struct LossValue {

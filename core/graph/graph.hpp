@@ -17,7 +17,7 @@ namespace kinemap::graph {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-enum class LandmarkKind : std::uint8_t { Wall, Table, Screen, Seat };
+enum class LandmarkKind : std::uint8_t { Wall, Table, Screen, Seat, Direction };
 
 /// A landmark with the fewest numbers its nature leaves free (`dimension(kind)` of `x` are used):
 /// - Wall (2): heading ψ of the normal, offset d; n = (cos ψ, sin ψ, 0), n·(p − anchor) = d.
@@ -28,6 +28,7 @@ enum class LandmarkKind : std::uint8_t { Wall, Table, Screen, Seat };
 /// up from the level by
 ///   τ; u = level, ẑ × n; v = w × u, up in the plane.
 /// - Seat (4): x, y, z; heading where the sitter faces.
+/// - Direction (1): heading that walls are parallel or perpendicular to; not a thing, nothing touches it.
 struct Landmark {
   LandmarkKind kind = LandmarkKind::Wall;
   std::array<double, 7> x{};
@@ -36,7 +37,7 @@ struct Landmark {
   bool active = true;           ///< inactive landmarks and their factors are left out of the problem
 };
 constexpr int dimension(LandmarkKind kind) {
-  constexpr int sizes[] = {2, 6, 7, 4};
+  constexpr int sizes[] = {2, 6, 7, 4, 1};
   return sizes[static_cast<int>(kind)];
 }
 

@@ -22,6 +22,10 @@ constexpr double kMaxTurn = 0.8;     // rad: objects are not mistaken for ones t
 constexpr double kOverlap = 0.3;     // part of the shorter of two stretches that two visits to one wall share
 constexpr double kAlongSigma = 0.1;  // m: what two visits differ by along the wall beyond the drift between them
 constexpr double kMaxMissing = 0.4;  // m of that overlap that drift may have taken; stretches farther apart stay two
+// How widely objects of a kind vary: m, m² for the two sizes.
+constexpr double kTableHeights = 0.3, kTableSizes = 1.0;
+constexpr double kScreenHeights = 0.8, kScreenSizes = 0.7;
+constexpr double kSeatHeights = 0.2;
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
@@ -31,6 +35,9 @@ double squared(double x) { return x * x; }
 struct Difference {
   std::function<Eigen::VectorXd(const Landmark&, const Landmark&)> of;
   Eigen::VectorXd noise;  ///< standard deviations beyond the graph's covariance
+  int places = 2;         ///< so many of its first numbers say where the object is, the others what it is like
+  double density = 0.0;   ///< of objects of the kind, per m or m² (`places`)
+  double variety = 1.0;   ///< probability density of the other numbers among objects of the kind
   int quarter_turns = 0;
 };
 
@@ -46,6 +53,9 @@ Difference wall_difference(const MapState& state, std::size_t a, const MapperCon
   };
   d.noise =
       Eigen::Vector2d(config.position_sigma_m, std::max(config.heading_sigma_rad, config.position_sigma_m / half));
+  d.places = 1;
+  d.density = config.wall_density_per_m;
+  d.variety = 1.0 / kHalfPi;
   return d;
 }
 
@@ -68,6 +78,8 @@ Difference table_difference(const Landmark& a, const Landmark& b, const MapperCo
   d.noise.resize(6);
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, config.heading_sigma_rad,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
+  d.density = config.table_density_per_m2;
+  d.variety = 1.0 / (kTableHeights * kHalfPi * kTableSizes);
   return d;
 }
 
@@ -83,6 +95,8 @@ Difference screen_difference(const Landmark& b, const MapperConfig::Association&
   const double heading = std::max(config.heading_sigma_rad, config.position_sigma_m / std::max(0.3, b.x[4]));
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, heading,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
+  d.density = config.screen_density_per_m2;
+  d.variety = 1.0 / (kScreenHeights * 4.0 * kHalfPi * kScreenSizes);
   return d;
 }
 
@@ -93,6 +107,8 @@ Difference seat_difference(const MapperConfig::Association& config) {
         Eigen::Vector4d(x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3])));
   };
   d.noise = Eigen::Vector4d(config.position_sigma_m, config.position_sigma_m, 0.5 * config.position_sigma_m, 0.2);
+  d.density = config.seat_density_per_m2;
+  d.variety = 1.0 / (kSeatHeights * 4.0 * kHalfPi);
   return d;
 }
 
@@ -107,6 +123,8 @@ Difference difference(const MapState& state, std::size_t a, std::size_t b, const
       return screen_difference(landmarks[b], config);
     case LandmarkKind::Seat:
       return seat_difference(config);
+    case LandmarkKind::Direction:
+      break;  // there is one alone
   }
   return {};
 }
@@ -126,22 +144,19 @@ Eigen::MatrixXd jacobian(const Difference& d, const Landmark& a, const Landmark&
   return j;
 }
 
-/// Level distance between the two, m, and how far it may be.
-double shift(const Eigen::VectorXd& e, LandmarkKind kind) {
-  return kind == LandmarkKind::Wall ? std::abs(e[0]) : e.head<2>().norm();
+/// 2 ln of a normal density at e.
+double twice_log_density(const Eigen::VectorXd& e, const Eigen::MatrixXd& covariance) {
+  const auto ldlt = covariance.ldlt();
+  return -e.dot(ldlt.solve(e)) - ldlt.vectorD().array().max(1e-300).log().sum() -
+         static_cast<double>(e.size()) * std::log(2.0 * std::numbers::pi);
 }
-double max_shift(LandmarkKind kind, const MapperConfig::Association& config) {
-  switch (kind) {
-    case LandmarkKind::Wall:
-      return config.wall_max_shift_m;
-    case LandmarkKind::Table:
-      return config.table_max_shift_m;
-    case LandmarkKind::Screen:
-      return config.screen_max_shift_m;
-    case LandmarkKind::Seat:
-      return config.seat_max_shift_m;
-  }
-  return 0.0;
+
+/// 2 ln of the odds that a difference `e` with covariance `s` is between two visits to one object.
+double evidence(const Difference& d, const Eigen::VectorXd& e, const Eigen::MatrixXd& s, double look_alike_share) {
+  const Eigen::Index likeness = e.size() - d.places;
+  const double alike = std::exp(0.5 * twice_log_density(e.tail(likeness), s.bottomRightCorner(likeness, likeness)));
+  const double another = d.density * (look_alike_share * alike + (1.0 - look_alike_share) * d.variety);
+  return twice_log_density(e, s) - 2.0 * std::log(another);
 }
 
 std::optional<KeyPoseId> last_visit(const MapState& state, std::size_t landmark) {
@@ -226,26 +241,25 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
   const Landmark& a = landmarks[newcomer];
   for (std::size_t other = 0; other < landmarks.size(); ++other) {
     const Landmark& b = landmarks[other];
-    if (other == newcomer || !b.active || b.kind != a.kind) continue;
+    if (other == newcomer || !b.active || b.kind != a.kind || a.kind == LandmarkKind::Direction) continue;
     const Difference d = difference(state, newcomer, other, config);
     const Eigen::VectorXd e = d.of(a, b);
-    const int heading = a.kind == LandmarkKind::Wall ? 1 : 3;
-    if (std::abs(e[heading]) > kMaxTurn || shift(e, a.kind) > max_shift(a.kind, config)) continue;
+    if (std::abs(e[a.kind == LandmarkKind::Wall ? 1 : 3]) > kMaxTurn) continue;
     const std::array<graph::Variable, 2> pair{graph::Variable{graph::Variable::Kind::Landmark, newcomer},
                                               graph::Variable{graph::Variable::Kind::Landmark, other}};
     const Eigen::MatrixXd j = jacobian(d, a, b);
     Eigen::MatrixXd s = j * marginals.joint(pair) * j.transpose();
     s.diagonal() += d.noise.cwiseAbs2();
-    double distance = e.dot(s.ldlt().solve(e));
-    int dimensions = static_cast<int>(e.size());
+    Candidate candidate{other, d.quarter_turns, e.dot(s.ldlt().solve(e)), static_cast<int>(e.size()),
+                        evidence(d, e, s, config.look_alike_share)};
     if (a.kind == LandmarkKind::Wall) {
       const auto along = along_wall_distance(state, marginals, newcomer, other);
       if (!along) continue;
-      distance += *along, ++dimensions;
+      candidate.distance += *along, candidate.evidence -= *along, ++candidate.dimensions;
     }
-    if (distance <= gate(config.gate_sigma, dimensions)) out.push_back({other, d.quarter_turns, distance, dimensions});
+    if (candidate.distance <= gate(config.gate_sigma, candidate.dimensions)) out.push_back(candidate);
   }
-  std::sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.distance < y.distance; });
+  std::sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.evidence > y.evidence; });
   return out;
 }
 
@@ -263,11 +277,39 @@ void merge(MapState& state, std::size_t from, const Candidate& candidate) {
     if (visit.contacts == 0) state.graph.seats[visit.seat].landmark = to;
   }
   state.graph.landmarks[from].active = false;
+  std::erase_if(state.graph.parallels, [from](const graph::ParallelFactor& f) { return f.b == from; });
   auto& record = state.landmarks[to];
   const auto& other = state.landmarks[from];
   record.observations += other.observations;
   record.first_seen_s = std::min(record.first_seen_s, other.first_seen_s);
   record.last_seen_s = std::max(record.last_seen_s, other.last_seen_s);
+}
+
+std::size_t split(MapState& state, std::size_t visit) {
+  ObservationRecord& record = state.observations[visit];
+  const std::size_t from = record.landmark, to = state.graph.landmarks.size();
+  state.graph.landmarks.push_back(state.graph.landmarks[from]);
+  state.landmarks.push_back({0, 1, record.begin_s, record.end_s, state.landmarks[from].floor_z});
+  const auto priors = state.graph.landmark_priors;
+  for (auto prior : priors) {
+    if (prior.landmark != from) continue;
+    prior.landmark = to;
+    state.graph.landmark_priors.push_back(prior);
+  }
+  record.landmark = to;
+  for (std::size_t k = record.first_contact; k < record.first_contact + record.contacts; ++k)
+    state.graph.contacts[k].landmark = to;
+  if (record.contacts == 0) state.graph.seats[record.seat].landmark = to;
+
+  LandmarkRecord& rest = state.landmarks[from];
+  rest.observations = 0, rest.first_seen_s = HUGE_VAL, rest.last_seen_s = -HUGE_VAL;
+  for (const auto& other : state.observations) {
+    if (other.landmark != from) continue;
+    ++rest.observations;
+    rest.first_seen_s = std::min(rest.first_seen_s, other.begin_s);
+    rest.last_seen_s = std::max(rest.last_seen_s, other.end_s);
+  }
+  return to;
 }
 
 }  // namespace kinemap

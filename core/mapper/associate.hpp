@@ -16,16 +16,21 @@ struct Candidate {
   int quarter_turns = 0;  ///< tables: the newcomer's axes are turned so many times 90° against the candidate's
   double distance = 0.0;  ///< Mahalanobis distance squared of the relative marginal covariance
   int dimensions = 0;     ///< of that distance
+  double evidence = 0.0;  ///< 2 ln of the odds that both are one, against another object of the kind
 };
 
-/// Landmarks of the same kind that `newcomer` is compatible with, nearest first: the difference of their numbers is
-/// judged by the joint marginal covariance of both (drift between the visits included) plus what two traces of one
-/// object differ by anyway.
+/// Landmarks of the same kind that `newcomer` is compatible with, most evidence first: the difference of their numbers
+/// is judged by the joint marginal covariance of both (drift between the visits included) plus what two traces of one
+/// object differ by anyway, against the density of other objects that look the same.
 std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
                                   const MapperConfig::Association& config);
 
 /// Makes `from` one with `candidate.landmark`: its factors refer to that landmark now, `from` becomes inactive.
 void merge(MapState& state, std::size_t from, const Candidate& candidate);
+
+/// Gives visit `visit` of `state.observations` a landmark of its own again, with the numbers of the one that it was
+/// merged into, and returns it. The visit must not be the landmark's only one.
+std::size_t split(MapState& state, std::size_t visit);
 
 /// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma`
 /// (Wilson–Hilferty).

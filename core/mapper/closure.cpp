@@ -7,12 +7,16 @@
 #include <optional>
 #include <utility>
 
+#include "core/mapper/directions.hpp"
+#include "core/mapper/reassign.hpp"
+
 namespace kinemap {
 namespace {
 
 using graph::LandmarkKind;
 
 constexpr int kPullIterations = 3;
+constexpr int kReassignRounds = 2;
 
 /// Sets the loss of all factors on the newcomer's visits.
 void set_loss(MapState& state, const std::vector<std::size_t>& visits, graph::Loss contact, graph::Loss seat) {
@@ -35,25 +39,7 @@ std::array<std::size_t, 2> ordered(std::size_t a, std::size_t b) { return {std::
 
 }  // namespace
 
-std::vector<graph::ParallelFactor> right_angles(const MapState& state, const MapperConfig::Walls& config) {
-  std::vector<graph::ParallelFactor> out;
-  if (config.right_angle_sigma_rad <= 0.0) return out;
-  const auto& landmarks = state.graph.landmarks;
-  for (std::size_t a = 0; a < landmarks.size(); ++a) {
-    if (!landmarks[a].active || landmarks[a].kind != LandmarkKind::Wall) continue;
-    for (std::size_t b = a + 1; b < landmarks.size(); ++b) {
-      if (!landmarks[b].active || landmarks[b].kind != LandmarkKind::Wall) continue;
-      const double difference = landmarks[b].x[0] - landmarks[a].x[0];
-      const double offset = std::round(difference / (std::numbers::pi / 2.0)) * (std::numbers::pi / 2.0);
-      if (std::abs(difference - offset) > config.right_angle_max_rad) continue;
-      out.push_back({a, b, offset, config.right_angle_sigma_rad, {graph::Loss::Kind::Cauchy, 2.0}});
-    }
-  }
-  return out;
-}
-
 bool LoopCloser::optimise(MapState& state, int iterations) const {
-  state.graph.parallels = right_angles(state, config_.walls);
   graph::OptimizerOptions options;
   options.max_iterations = iterations;
   const graph::Verdict verdict = graph::optimize(state.graph, options);
@@ -63,6 +49,14 @@ bool LoopCloser::optimise(MapState& state, int iterations) const {
   else
     state.summary.last_cost = verdict.final_cost;
   return verdict.usable;
+}
+
+bool LoopCloser::settle(MapState& state, int iterations) const {
+  bool usable = optimise(state, iterations);
+  // Sides were chosen on raw odometry; a few rounds are enough, since each choice has hysteresis.
+  for (int round = 0; round < kReassignRounds && usable && reassign_edges(state) > 0; ++round)
+    usable = optimise(state, iterations);
+  return usable;
 }
 
 LoopCloser::Trial LoopCloser::attempt(const MapState& state, std::size_t newcomer, const Candidate& candidate) const {
@@ -80,38 +74,54 @@ LoopCloser::Trial LoopCloser::attempt(const MapState& state, std::size_t newcome
 }
 
 bool LoopCloser::close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found) {
-  std::optional<Trial> best;
-  double second = HUGE_VAL;
-  for (std::size_t k = 0; k < std::min<std::size_t>(found.size(), 2); ++k) {
-    // The second one costs a solve; it is only worth it where the linear prediction leaves the question open.
-    if (k == 1 && found[1].distance > found[0].distance + 4.0 * config_.association.ambiguity) break;
-    Trial trial = attempt(state, newcomer, found[k]);
-    if (!best || trial.cost_increase < best->cost_increase) {
-      if (best) second = best->cost_increase;
-      best = std::move(trial);
-    } else {
-      second = trial.cost_increase;
+  const auto& config = config_.association;
+  if (found.empty() || found.front().evidence < config.min_evidence) return false;
+  const bool clear = found.size() < 2 || found[0].evidence - found[1].evidence > config.ambiguity;
+  if (clear) {
+    Trial trial = attempt(state, newcomer, found.front());
+    if (trial.cost_increase <= config.max_cost_increase) {
+      state = std::move(trial.state);
+      ++state.summary.loop_closures;
+      contradicted_.clear();  // the drift is another now
+      return true;
     }
+    ++state.summary.loop_closures_revoked;
   }
-  if (!best) return false;
-  const bool clear = second - best->cost_increase > config_.association.ambiguity;
-  const bool agrees = best->cost_increase <= config_.association.max_cost_increase;
-  if (clear && agrees) {
-    state = std::move(best->state);
-    ++state.summary.loop_closures;
-    contradicted_.clear();  // the drift is another now
-    return true;
-  }
-  if (!agrees) ++state.summary.loop_closures_revoked;
   for (const Candidate& candidate : found) contradicted_.push_back(ordered(newcomer, candidate.landmark));
   return false;
 }
 
+bool LoopCloser::align(MapState& state) const {
+  const auto marginals = graph::Marginals::compute(state.graph);
+  return marginals && align_walls(state, *marginals, config_.walls) &&
+         optimise(state, config_.solver.closure_iterations);
+}
+
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
+  settle(state, config_.solver.closure_iterations);  // candidates are judged at an optimum
+  if (state.graph.landmarks[newcomer].kind == LandmarkKind::Wall) align(state);
   if (const auto marginals = graph::Marginals::compute(state.graph))
     if (close(state, newcomer, candidates(state, newcomer, *marginals, config_.association))) return true;
   state.landmarks[newcomer].id = next_id_++;
   return false;
+}
+
+bool LoopCloser::revise(MapState& state) {
+  bool any = false;
+  for (std::size_t v = 0; v < state.observations.size(); ++v) {
+    if (visits_of(state, state.observations[v].landmark).size() < 2) continue;
+    MapState trial = state;
+    const std::size_t alone = split(trial, v);
+    if (!optimise(trial, config_.solver.closure_iterations)) continue;
+    const double relief = 2.0 * (graph::cost(state.graph) - trial.summary.last_cost);
+    if (relief < config_.association.min_relief) continue;
+    contradicted_.push_back(ordered(alone, state.observations[v].landmark));
+    state = std::move(trial);
+    state.landmarks[alone].id = next_id_++;
+    ++state.summary.loop_closures_revoked;
+    any = true;
+  }
+  return any;
 }
 
 bool LoopCloser::reconsider(MapState& state) {
@@ -127,6 +137,7 @@ bool LoopCloser::reconsider(MapState& state) {
     any = true;
     marginals = graph::Marginals::compute(state.graph);
   }
+  if (align(state)) any = true;
   return any;
 }
 

@@ -20,14 +20,22 @@ class LoopCloser {
  public:
   explicit LoopCloser(const MapperConfig& config) : config_(config) {}
 
-  /// `newcomer` has just been added to `state`. True when a loop was closed; `state` is optimised then.
+  /// `newcomer` has just been added to `state`. True when a loop was closed. `state` is optimised.
   bool resolve(MapState& state, std::size_t newcomer);
 
   /// Looks once more at all landmarks: with the drift corrected, two that were left separate may be one. True when some
   /// loop was closed.
   bool reconsider(MapState& state);
 
-  /// Optimises with at most `iterations`. The right angles between walls are renewed first.
+  /// Takes back what the optimum contradicts by now: each visit that was merged into an object is given one of its own
+  /// for a trial, and keeps it when the map then costs less by more than a closure may cost. What was taken back is
+  /// free to find its place anew. True when something changed; `state` is optimised then.
+  bool revise(MapState& state);
+
+  /// Optimises, then chooses the sides of rectangles anew for the contacts and optimises again while that changes any.
+  bool settle(MapState& state, int iterations) const;
+
+  /// Optimises with at most `iterations`.
   bool optimise(MapState& state, int iterations) const;
 
  private:
@@ -37,6 +45,9 @@ class LoopCloser {
   };
   [[nodiscard]] Trial attempt(const MapState& state, std::size_t newcomer, const Candidate& candidate) const;
 
+  /// Decides anew which walls keep to the building's direction; optimises when that changed.
+  bool align(MapState& state) const;
+
   /// Tries the newcomer's candidates, nearest first. True when one was accepted; `state` is optimised then.
   bool close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found);
 
@@ -45,8 +56,5 @@ class LoopCloser {
       contradicted_;  ///< pairs that an optimum spoke against since the last closure
   std::uint32_t next_id_ = 1;
 };
-
-/// Soft priors that walls are parallel or at right angles, for all pairs that nearly are.
-std::vector<graph::ParallelFactor> right_angles(const MapState& state, const MapperConfig::Walls& config);
 
 }  // namespace kinemap

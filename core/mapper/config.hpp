@@ -13,10 +13,14 @@ struct MapperConfig {
     double translation_m_per_sqrt_m = 0.022;  ///< random walk of the level position (1 cm per 20 cm, paper section V)
     double translation_m_per_sqrt_s = 0.003;  ///< the same while standing
     double vertical_m_per_sqrt_m = 0.012;     ///< random walk of the height, false steps included
-    double heading_rad_per_sqrt_s = 0.0175;  ///< random walk of the heading; wide, since magnetic errors are correlated
-    double heading_rad_per_rad = 0.02;       ///< of each turn
-    double tilt_rad = 0.009;                 ///< roll and pitch, observed from gravity at each key pose
-    double floor_m = 0.02;                   ///< height of the stance foot over its level
+    double heading_rad_per_sqrt_s = 0.035;    ///< random walk of the heading; wide, since its errors are correlated
+    /// The same beside metal, where the compass draws the heading to a wrong north: while a table or screen is traced
+    /// (or the suit says that the field is wrong) and for some time after it, until the heading has come back.
+    double magnetic_rad_per_sqrt_s = 0.05;
+    double magnetic_after_s = 8.0;
+    double heading_rad_per_rad = 0.02;  ///< of each turn
+    double tilt_rad = 0.009;            ///< roll and pitch, observed from gravity at each key pose
+    double floor_m = 0.02;              ///< height of the stance foot over its level
   } odometry;
 
   /// The right hand as a measuring tip.
@@ -41,10 +45,11 @@ struct MapperConfig {
   } seats;
 
   struct Walls {
-    double height_m = 2.5;                ///< assumed: a hand does not reach the ceiling
-    double right_angle_sigma_rad = 0.03;  ///< soft prior that walls are parallel or at right angles; 0: none
-    double right_angle_max_rad = 0.17;    ///< walls farther from a multiple of 90° are oblique and left alone
-    double join_max_m = 8.0;              ///< a wall is prolonged at most so far to meet the next
+    double height_m = 2.5;  ///< assumed: a hand does not reach the ceiling
+    double right_angle_sigma_rad =
+        0.02;                     ///< walls keep so well to the building's direction (mod 90°); 0: no such prior
+    double oblique_share = 0.05;  ///< part of all walls that keep to no right angle; they are left alone
+    double join_max_m = 8.0;      ///< a wall is prolonged at most so far to meet the next
   } walls;
 
   struct Association {
@@ -53,15 +58,17 @@ struct MapperConfig {
     double heading_sigma_rad = 0.06;
     double size_sigma_m = 0.06;
     double size_sigma_per_m = 0.05;
-    /// A newcomer farther from a landmark than this is not taken for it, however wide the covariance: another object of
-    /// the kind is as likely there. When other closures have taken the drift out, it is looked at again. Tables and
-    /// screens have sizes to tell them by.
-    double wall_max_shift_m = 1.0;
-    double seat_max_shift_m = 0.6;
-    double table_max_shift_m = 1.5;
-    double screen_max_shift_m = 1.0;
+    /// How many objects that look the same are expected elsewhere: the newcomer may be another one. Against this the
+    /// hypothesis that it is the known one has to win, so the gate closes as the drift between both grows.
+    double wall_density_per_m = 0.15;
+    double table_density_per_m2 = 0.08;
+    double screen_density_per_m2 = 0.08;
+    double seat_density_per_m2 = 0.3;
+    double look_alike_share = 0.5;    ///< part of them that also have the same size, height and heading
+    double min_evidence = 0.0;        ///< 2 ln of the odds that it is the known one, to close a loop
     double max_cost_increase = 30.0;  ///< a closure that costs more (2 × robust cost) than this is taken back
-    double ambiguity = 6.0;           ///< two candidates whose costs differ by less wait for more evidence
+    double min_relief = 20.0;  ///< a visit is taken off its object when the optimum without it costs so much less
+    double ambiguity = 4.0;    ///< two candidates whose costs differ by less wait for more evidence
   } association;
 
   struct Solver {

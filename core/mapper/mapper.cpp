@@ -38,6 +38,10 @@ class Mapper::Impl {
     if (found.extraction.observations.empty())
       unresolved_.push_back({trace.begin_s, trace.end_s, found.extraction.reason});
     for (const auto& observation : found.extraction.observations)
+      if (observation.landmark.kind != graph::LandmarkKind::Wall)
+        odometry_.suspect_heading(trace.begin_s - kApproach, trace.end_s + config_.odometry.magnetic_after_s,
+                                  state_.graph);
+    for (const auto& observation : found.extraction.observations)
       associate(add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
     publish();
     return true;
@@ -52,8 +56,9 @@ class Mapper::Impl {
 
   void finish() {
     if (state_.graph.poses.empty()) return;
-    closer_.optimise(state_, config_.solver.final_iterations);
-    if (closer_.reconsider(state_)) closer_.optimise(state_, config_.solver.final_iterations);
+    closer_.settle(state_, config_.solver.final_iterations);
+    closer_.revise(state_);
+    if (closer_.reconsider(state_)) closer_.settle(state_, config_.solver.final_iterations);
     publish();
   }
 
@@ -62,6 +67,7 @@ class Mapper::Impl {
 
  private:
   static constexpr std::size_t kTouch = 0;
+  static constexpr double kApproach = 2.0;  ///< s that one stands at a table or screen before one traces it
   static constexpr std::size_t kTrajectoryLag =
       10;  ///< key poses after which a walk is published without news of objects
 

@@ -15,7 +15,8 @@ double squared(double x) { return x * x; }
 
 }  // namespace
 
-graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
+                                         const MapperConfig::Odometry& config) {
   // A restart of the suit says nothing of the way in between: so wide that only landmarks tie the parts together.
   if (to.discontinuity) {
     graph::Matrix6 loose = graph::Matrix6::Identity();
@@ -29,7 +30,8 @@ graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to,
   const double up = std::sqrt(squared(config.vertical_m_per_sqrt_m) * to.path_m +
                               squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
   const double heading =
-      std::sqrt(squared(config.heading_rad_per_sqrt_s) * dt + squared(config.heading_rad_per_rad * to.turn_rad));
+      std::sqrt(squared(magnetic ? config.magnetic_rad_per_sqrt_s : config.heading_rad_per_sqrt_s) * dt +
+                squared(config.heading_rad_per_rad * to.turn_rad));
   graph::Matrix6 information = graph::Matrix6::Zero();
   information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad,
       1.0 / heading;
@@ -61,9 +63,17 @@ void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) const {
   between.i = from.id;
   between.j = key_pose.id;
   between.T_i_j = from.T_odom_pelvis.inverse() * key_pose.T_odom_pelvis;
-  between.sqrt_information = odometry_sqrt_information(from, key_pose, config_);
+  between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s < suspect_until_s_, config_);
   graph.between.push_back(between);
   graph.poses.push_back(graph.poses.back() * between.T_i_j);
+}
+
+void Odometry::suspect_heading(double begin_s, double end_s, graph::Graph& graph) {
+  suspect_until_s_ = std::max(suspect_until_s_, end_s);
+  for (std::size_t k = key_poses_.size(); k-- > 1 && key_poses_[k].time_s > begin_s;)
+    if (key_poses_[k].time_s < end_s)
+      graph.between[k - 1].sqrt_information =
+          odometry_sqrt_information(key_poses_[k - 1], key_poses_[k], true, config_);
 }
 
 void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {

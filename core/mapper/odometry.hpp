@@ -19,6 +19,9 @@ class Odometry {
   /// Appends pose `key_pose.id` to the graph with its factors. Key poses come in order, without gaps.
   void add(const KeyPose& key_pose, graph::Graph& graph);
 
+  /// The compass is not to be trusted between these times (s): the heading may have turned more than odometry says.
+  void suspect_heading(double begin_s, double end_s, graph::Graph& graph);
+
   [[nodiscard]] const std::vector<KeyPose>& key_poses() const { return key_poses_; }
   /// Height of the level that the wearer stands on, map frame, m.
   [[nodiscard]] double floor_z() const { return level_z_; }
@@ -29,6 +32,7 @@ class Odometry {
 
   MapperConfig::Odometry config_;
   std::vector<KeyPose> key_poses_;
+  double suspect_until_s_ = -1e9;  ///< key poses to come until then are beside metal, or just were
   double level_z_ = 0.0;
   std::optional<double> last_stance_z_;  ///< odom frame, m
   std::vector<double> levels_;           ///< heights of the levels found so far, map frame
@@ -38,6 +42,8 @@ class Odometry {
 };
 
 /// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame.
-graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
+/// `magnetic`: beside metal.
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
+                                         const MapperConfig::Odometry& config);
 
 }  // namespace kinemap

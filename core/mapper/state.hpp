@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/events.hpp"
@@ -36,6 +37,7 @@ struct MapState {
   graph::Graph graph;
   std::vector<LandmarkRecord> landmarks;
   std::vector<ObservationRecord> observations;
+  std::optional<std::size_t> direction;  ///< landmark: the heading that walls keep to
   GraphSummary summary;
 };
 

@@ -58,16 +58,17 @@ TEST(Odometry, AStairLeadsToAnotherLevelAndBack) {
 TEST(Odometry, NoiseGrowsWithWayTimeAndTurn) {
   const MapperConfig::Odometry config;
   KeyPose from = at(0, 0, 1), to = at(1, 0.2, 1);
-  const auto base = odometry_sqrt_information(from, to, config);
+  const auto base = odometry_sqrt_information(from, to, false, config);
   KeyPose farther = to, later = to, turned = to, restarted = to;
   farther.path_m = 2.0;
   later.time_s = 10.0;
   turned.turn_rad = 3.0;
   restarted.discontinuity = true;
-  EXPECT_LT(odometry_sqrt_information(from, farther, config)(0, 0), base(0, 0));
-  EXPECT_LT(odometry_sqrt_information(from, later, config)(5, 5), base(5, 5));
-  EXPECT_LT(odometry_sqrt_information(from, turned, config)(5, 5), base(5, 5));
-  EXPECT_LT(odometry_sqrt_information(from, restarted, config)(0, 0), 1.0);
+  EXPECT_LT(odometry_sqrt_information(from, farther, false, config)(0, 0), base(0, 0));
+  EXPECT_LT(odometry_sqrt_information(from, later, false, config)(5, 5), base(5, 5));
+  EXPECT_LT(odometry_sqrt_information(from, to, true, config)(5, 5), base(5, 5));
+  EXPECT_LT(odometry_sqrt_information(from, turned, false, config)(5, 5), base(5, 5));
+  EXPECT_LT(odometry_sqrt_information(from, restarted, false, config)(0, 0), 1.0);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/mapper/closure.hpp"
 #include "core/mapper/rooms.hpp"
 
 namespace kinemap {
@@ -250,17 +249,6 @@ TEST(CutWalls, AStubInTheRoomDisturbsNoCorner) {
 }
 
 TEST(CutWalls, NoWallsNoRooms) { EXPECT_TRUE(cut_walls(MapState{}, kConfig).empty()); }
-
-TEST(RightAngles, LeaveAnObliqueWallAlone) {
-  Visit visit;
-  visit.touch_all({{0, 0}, {5, 0}, {4, 3}, {0, 3}}, 0.3);  // the second wall is 18° off
-  const auto factors = right_angles(visit.state, kConfig);
-  EXPECT_EQ(factors.size(), 3u);
-  for (const auto& f : factors) EXPECT_TRUE(f.a != 1 && f.b != 1);
-  MapperConfig::Walls none;
-  none.right_angle_sigma_rad = 0.0;
-  EXPECT_TRUE(right_angles(visit.state, none).empty());
-}
 
 }  // namespace
 }  // namespace kinemap

@@ -15,6 +15,11 @@ using graph::Landmark;
 using graph::LandmarkKind;
 
 constexpr double kMinLeftover = 3.0;   // s
+constexpr double kCutStep = 0.75;      // s between the cuts that are tried in a gesture over two objects
+constexpr double kMostOfAPart = 0.75;  // of the contacts of such a part are on its object
+constexpr double kHighestEdge = 1.1;   // m over the floor, of a table
+constexpr int kDeepest = 3;            // leftovers of leftovers
+constexpr int kNoLeftovers = kDeepest;
 constexpr double kMostOfIt = 0.75;     // of the contacts lie on sides where sides were drawn
 constexpr double kLongestPart = 2.5;   // m: longer is a wall, whatever else the hand did
 constexpr double kSecondChoice = 0.8;  // part of the trace that the surface that holds less of it must still hold
@@ -204,16 +209,67 @@ void extract_range(std::span<const TracePoint> points, IndexRange range, double 
     if (depth == 0 && out.reason.empty()) out.reason = attempt.reason;
     round_wearer = attempt.round_wearer;
   }
-  if (depth >= 3) return;
+  if (depth >= kDeepest) return;
   extract_range(points, {range.begin, first}, floor_z, config, depth + 1, out);
   extract_range(points, {last + 1, range.end}, floor_z, config, depth + 1, out);
+}
+
+/// The one object that nearly all of points[begin, end) were drawn on, if there is one.
+std::optional<Observation> single_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
+                                         const LandmarkConfig& config) {
+  Extraction found;
+  extract_range(points, range, floor_z, config, kNoLeftovers, found);
+  if (found.observations.size() != 1) return std::nullopt;
+  const auto explained = static_cast<double>(found.observations[0].contacts.size());
+  if (explained < kMostOfAPart * static_cast<double>(range.end - range.begin)) return std::nullopt;
+  return std::move(found.observations[0]);
+}
+
+/// Two edges of a table, seen from outside its corner, look like two walls; walls at that height surround the wearer.
+bool may_be_table_corner(std::span<const TracePoint> points, const Observation& a, const Observation& b,
+                         double floor_z) {
+  if (a.landmark.kind != LandmarkKind::Wall || b.landmark.kind != LandmarkKind::Wall) return false;
+  const auto middle = [&](const Observation& wall) { return points[wall.contacts[wall.contacts.size() / 2]].p; };
+  const auto before = [&](const Observation& wall, const Eigen::Vector3d& p) {
+    const double heading = wall.landmark.x[0];
+    return Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0).dot(p - wall.landmark.anchor) > 0.0;
+  };
+  return std::max(middle(a).z(), middle(b).z()) - floor_z < kHighestEdge &&
+         !(before(a, middle(b)) && before(b, middle(a)));
+}
+
+/// A gesture over two objects one after the other, of which neither stands out in the whole: two walls touched at one
+/// height look like a level surface, two screens like none. Tries cuts in time; both parts must be objects by
+/// themselves.
+std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRange range, double floor_z,
+                                     const LandmarkConfig& config) {
+  std::vector<Observation> best;
+  std::size_t most = 0;
+  double next_s = points[range.begin].time_s + kMinLeftover;
+  for (std::size_t cut = range.begin; cut < range.end; ++cut) {
+    if (points[cut].time_s < next_s) continue;
+    if (points[range.end - 1].time_s - points[cut].time_s < kMinLeftover) break;
+    next_s = points[cut].time_s + kCutStep;
+    auto before = single_object(points, {range.begin, cut}, floor_z, config);
+    if (!before) continue;
+    auto after = single_object(points, {cut, range.end}, floor_z, config);
+    if (!after || may_be_table_corner(points, *before, *after, floor_z)) continue;
+    const std::size_t explained = before->contacts.size() + after->contacts.size();
+    if (explained <= most) continue;
+    most = explained;
+    best = {std::move(*before), std::move(*after)};
+  }
+  return best;
 }
 
 }  // namespace
 
 Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config) {
   Extraction out;
-  extract_range(points, without_reach(points, config), floor_z, config, 0, out);
+  const IndexRange drawn = without_reach(points, config);
+  extract_range(points, drawn, floor_z, config, 0, out);
+  if (out.observations.empty() && drawn.end > drawn.begin)
+    out.observations = two_objects(points, drawn, floor_z, config);
   if (!out.observations.empty()) out.reason.clear();
   return out;
 }

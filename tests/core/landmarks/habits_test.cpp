@@ -101,6 +101,31 @@ TEST(Habits, ARoomsCornerAtOneHeightIsTwoWalls) {
   for (const auto& seen : found.observations) EXPECT_EQ(seen.landmark.kind, graph::LandmarkKind::Wall);
 }
 
+/// Two traces as one gesture: the second begins where the hand's way from the first ends.
+std::vector<TracePoint> one_after_the_other(std::vector<TracePoint> first, const std::vector<TracePoint>& second,
+                                            const Eigen::Vector3d& place) {
+  const double begin_s = first.back().time_s + 0.1 - second.front().time_s;
+  for (TracePoint point : second) {
+    point.time_s += begin_s;
+    point.p += place, point.p_body += place;
+    first.push_back(point);
+  }
+  return first;
+}
+
+TEST(Habits, TwoScreensInOneGestureAreTwo) {
+  Habit h;
+  h.upright = true, h.height = 1.1, h.length = 0.6, h.width = 0.35;
+  Habit other = h;
+  other.heading = h.heading + 0.9, other.length = 0.5, other.width = 0.32, other.seed = 7;
+  const auto points = one_after_the_other(trace_of(h).points, trace_of(other).points, {1.0, 0.4, 0.1});
+  const auto found = extract_landmarks(points, 0.0, LandmarkConfig{});
+  ASSERT_EQ(found.observations.size(), 2u) << found.reason;
+  for (const auto& seen : found.observations) EXPECT_EQ(seen.landmark.kind, graph::LandmarkKind::Screen);
+  EXPECT_NEAR(found.observations[0].landmark.x[4], 0.60, 0.03);
+  EXPECT_NEAR(found.observations[1].landmark.x[4], 0.50, 0.03);
+}
+
 TEST(Habits, OneEdgeOfATableIsNoTable) {
   Habit h;
   h.sides = 1;

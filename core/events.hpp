@@ -23,6 +23,9 @@ struct KeyPose {
   /// Point under the ankle of the foot that carries the weight, on the sole, in the pelvis frame (m); absent in the air
   /// or when sitting.
   std::optional<Eigen::Vector3d> p_pelvis_stance;
+  /// Metal bent the magnetic field at the pelvis at some time since the key pose before; absent when the suit did not
+  /// say.
+  std::optional<bool> field_disturbed;
 };
 
 /// The right hand at one instant of a trace, relative to the latest key pose at or before that instant.

@@ -57,6 +57,22 @@ void fields(V& v, TrackerConfig::Stance& c) {
 }
 
 template <class V>
+void fields(V& v, TrackerConfig::Magnetic& c) {
+  v.number("norm_on", c.norm_on, Range{"1", 0, 10});
+  v.number("norm_off", c.norm_off, Range{"1", 0, 10});
+  v.number("dip_on_rad", c.dip_on_rad, Range{"rad", 0, 3.1416});
+  v.number("dip_off_rad", c.dip_off_rad, Range{"rad", 0, 3.1416});
+  v.number("smoothing_s", c.smoothing_s, Range{"s", 0.001, 3600});
+  v.number("gap_s", c.gap_s, Range{"s", 0.001, 3600});
+  v.number("place_m", c.place_m, Range{"m", 0.001, 100});
+  v.number("min_places", c.min_places, Range{"1", 1, 100000});
+  v.number("max_places", c.max_places, Range{"1", 1, 100000});
+  v.at_most("norm_off", c.norm_off, "norm_on", c.norm_on);
+  v.at_most("dip_off_rad", c.dip_off_rad, "dip_on_rad", c.dip_on_rad);
+  v.at_most("min_places", static_cast<double>(c.min_places), "max_places", static_cast<double>(c.max_places));
+}
+
+template <class V>
 void fields(V& v, TrackerConfig::Gesture& c) {
   v.number("elbow_on_rad", c.elbow_on_rad, Range{"rad", 0, 3.1416});
   v.number("elbow_off_rad", c.elbow_off_rad, Range{"rad", 0, 3.1416});
@@ -129,6 +145,7 @@ template <class V>
 void fields(V& v, TrackerConfig& c) {
   v.section("key_poses", c.key_poses);
   v.section("stance", c.stance);
+  v.section("magnetic", c.magnetic);
   v.section("gesture", c.gesture);
   v.section("traces", c.traces);
   v.section("sitting", c.sitting);

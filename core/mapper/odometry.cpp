@@ -57,21 +57,22 @@ void Odometry::add(const KeyPose& key_pose, graph::Graph& graph) {
   key_poses_.push_back(key_pose);
 }
 
-void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) const {
+void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) {
+  if (key_pose.field_disturbed.value_or(false)) suspect_until_s_ = key_pose.time_s + config_.magnetic_after_s;
   const KeyPose& from = key_poses_.back();
   graph::BetweenFactor between;
   between.i = from.id;
   between.j = key_pose.id;
   between.T_i_j = from.T_odom_pelvis.inverse() * key_pose.T_odom_pelvis;
-  between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s < suspect_until_s_, config_);
+  between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s <= suspect_until_s_, config_);
   graph.between.push_back(between);
   graph.poses.push_back(graph.poses.back() * between.T_i_j);
 }
 
 void Odometry::suspect_heading(double begin_s, double end_s, graph::Graph& graph) {
-  suspect_until_s_ = std::max(suspect_until_s_, end_s);
+  if (key_poses_.empty() || !key_poses_.back().field_disturbed) suspect_until_s_ = std::max(suspect_until_s_, end_s);
   for (std::size_t k = key_poses_.size(); k-- > 1 && key_poses_[k].time_s > begin_s;)
-    if (key_poses_[k].time_s < end_s)
+    if (key_poses_[k].time_s < end_s && !key_poses_[k].field_disturbed)
       graph.between[k - 1].sqrt_information =
           odometry_sqrt_information(key_poses_[k - 1], key_poses_[k], true, config_);
 }

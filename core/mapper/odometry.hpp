@@ -19,7 +19,8 @@ class Odometry {
   /// Appends pose `key_pose.id` to the graph with its factors. Key poses come in order, without gaps.
   void add(const KeyPose& key_pose, graph::Graph& graph);
 
-  /// The compass is not to be trusted between these times (s): the heading may have turned more than odometry says.
+  /// A guess: the compass is not to be trusted between these times (s), the heading may have turned more than odometry
+  /// says. Where the suit says how the field was (KeyPose::field_disturbed) that counts, and nothing is guessed.
   void suspect_heading(double begin_s, double end_s, graph::Graph& graph);
 
   [[nodiscard]] const std::vector<KeyPose>& key_poses() const { return key_poses_; }
@@ -27,7 +28,7 @@ class Odometry {
   [[nodiscard]] double floor_z() const { return level_z_; }
 
  private:
-  void add_between(const KeyPose& key_pose, graph::Graph& graph) const;
+  void add_between(const KeyPose& key_pose, graph::Graph& graph);
   void add_floor(const KeyPose& key_pose, graph::Graph& graph);
 
   MapperConfig::Odometry config_;

@@ -29,6 +29,20 @@ struct TrackerConfig {
     double level_m = 0.015;       ///< soles closer in height are equal: the foot that carried the weight still does
   } stance;
 
+  /// Whether metal bends the magnetic field at the pelvis (when the suit streams it): against what is usual in this
+  /// recording.
+  struct Magnetic {
+    double norm_on = 0.10;  ///< strength, part of the usual one
+    double norm_off = 0.07;
+    double dip_on_rad = 0.10;
+    double dip_off_rad = 0.07;
+    double smoothing_s = 0.3;      ///< time constant of strength and dip
+    double gap_s = 1.0;            ///< without the field for so long nothing is said of it
+    double place_m = 0.5;          ///< the usual field is a median over places so far apart …
+    std::size_t min_places = 10;   ///< … known after so many of them …
+    std::size_t max_places = 200;  ///< … and from the latest of them only
+  } magnetic;
+
   /// Left hand on the hip: the wearer's word that the right hand shows something.
   struct Gesture {
     double elbow_on_rad = 2.09;  ///< inner angle between upper arm and forearm

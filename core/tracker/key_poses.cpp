@@ -15,7 +15,8 @@ double heading_or(const Pose& T_odom_pelvis, double otherwise) {
 }  // namespace
 
 std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,
-                                         const std::optional<Eigen::Vector3d>& p_pelvis_stance) {
+                                         const std::optional<Eigen::Vector3d>& p_pelvis_stance,
+                                         std::optional<bool> field_disturbed) {
   const Pose& T_odom_pelvis = frame[Segment::Pelvis];
   const bool broken = started_ && frame.discontinuity;
   if (!started_ || broken) restart(T_odom_pelvis);
@@ -24,6 +25,7 @@ std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,
   next_.T_odom_pelvis = T_odom_pelvis;
   next_.discontinuity = broken;
   next_.p_pelvis_stance = p_pelvis_stance;
+  if (field_disturbed) next_.field_disturbed = *field_disturbed || next_.field_disturbed.value_or(false);
   if (started_ && !broken && !due(frame, demand)) return std::nullopt;
   started_ = true;
   return emit();
@@ -73,6 +75,7 @@ KeyPose KeyPoseFold::emit() {
   ++next_.id;
   next_.path_m = 0.0;
   next_.turn_rad = 0.0;
+  next_.field_disturbed.reset();
   return latest_;
 }
 

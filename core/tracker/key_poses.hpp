@@ -20,9 +20,11 @@ class KeyPoseFold {
 
   explicit KeyPoseFold(const TrackerConfig::KeyPoses& config) : config_(config) {}
 
-  /// `p_pelvis_stance` as in KeyPose. The first frame and a discontinuity always give a key pose.
+  /// `p_pelvis_stance` as in KeyPose, `field_disturbed` at this frame. The first frame and a discontinuity always give
+  /// a key pose.
   std::optional<KeyPose> step(const SuitFrame& frame, Demand demand,
-                              const std::optional<Eigen::Vector3d>& p_pelvis_stance);
+                              const std::optional<Eigen::Vector3d>& p_pelvis_stance,
+                              std::optional<bool> field_disturbed);
   /// The newest frame as a key pose, unless it is one already.
   std::optional<KeyPose> finish();
 

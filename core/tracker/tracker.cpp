@@ -7,6 +7,7 @@
 #include "core/tracker/feet.hpp"
 #include "core/tracker/gesture.hpp"
 #include "core/tracker/key_poses.hpp"
+#include "core/tracker/magnetic.hpp"
 #include "core/tracker/sitting.hpp"
 #include "core/tracker/stance.hpp"
 #include "core/tracker/traces.hpp"
@@ -19,6 +20,7 @@ class Tracker::Impl {
       : ball_height_m_(config.stance.ball_height_m),
         key_poses_(config.key_poses),
         stance_(config.stance),
+        magnetic_(config.magnetic),
         gesture_(config.gesture),
         traces_(config.traces),
         sitting_(config.sitting) {}
@@ -35,7 +37,7 @@ class Tracker::Impl {
 
     const bool busy = traces_.open() || sitting_.open();
     const bool now = traces_.starting() || sitting_.starting();
-    put(key_poses_.step(frame, {busy, now}, p_pelvis_stance), events);
+    put(key_poses_.step(frame, {busy, now}, p_pelvis_stance, magnetic_.step(frame)), events);
     if (traces_.open()) traces_.record(frame, key_poses_.latest());
     sitting_.record(frame, key_poses_.latest());
     count();
@@ -56,6 +58,7 @@ class Tracker::Impl {
     put(traces_.close(), events);
     gesture_.reset();
     stance_.reset();
+    magnetic_.reset();
   }
 
   template <typename T>
@@ -76,6 +79,7 @@ class Tracker::Impl {
   double ball_height_m_;
   KeyPoseFold key_poses_;
   StanceFold stance_;
+  MagneticFold magnetic_;
   GestureFold gesture_;
   TraceFold traces_;
   SittingFold sitting_;

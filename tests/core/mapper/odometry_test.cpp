@@ -71,5 +71,51 @@ TEST(Odometry, NoiseGrowsWithWayTimeAndTurn) {
   EXPECT_LT(odometry_sqrt_information(from, restarted, false, config)(0, 0), 1.0);
 }
 
+/// Information of the heading on the way to key pose `k`, taken each second.
+double heading_information(const graph::Graph& graph, std::size_t k) {
+  return graph.between.at(k - 1).sqrt_information(5, 5);
+}
+
+TEST(Odometry, ADisturbedFieldWidensTheHeadingAndForSomeTimeAfter) {
+  MapperConfig::Odometry config;
+  config.magnetic_after_s = 3.0;
+  Odometry odometry{config};
+  graph::Graph graph;
+  for (KeyPoseId i = 0; i < 20; ++i) {
+    KeyPose k = at(i, 0.2 * i, 0.95);
+    k.field_disturbed = i == 8 || i == 9;
+    odometry.add(k, graph);
+  }
+  const double usual = heading_information(graph, 1);
+  for (KeyPoseId i = 1; i < 20; ++i) {
+    if (i >= 8 && i <= 12)
+      EXPECT_LT(heading_information(graph, i), 0.9 * usual) << i;
+    else
+      EXPECT_DOUBLE_EQ(heading_information(graph, i), usual) << i;
+  }
+}
+
+TEST(Odometry, WhatTheSuitSaysOfTheFieldCountsMoreThanTheGuess) {
+  for (const bool told : {false, true}) {
+    Odometry odometry{{}};
+    graph::Graph graph;
+    const auto add = [&](KeyPoseId i) {
+      KeyPose k = at(i, 0.2 * i, 0.95);
+      if (told) k.field_disturbed = false;
+      odometry.add(k, graph);
+    };
+    for (KeyPoseId i = 0; i < 10; ++i) add(i);
+    odometry.suspect_heading(4.5, 14.5, graph);
+    for (KeyPoseId i = 10; i < 20; ++i) add(i);
+    const double usual = heading_information(graph, 1);
+    for (KeyPoseId i = 1; i < 20; ++i) {
+      if (!told && i >= 5 && i <= 14)
+        EXPECT_LT(heading_information(graph, i), 0.9 * usual) << i;
+      else
+        EXPECT_DOUBLE_EQ(heading_information(graph, i), usual) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kinemap

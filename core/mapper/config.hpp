@@ -19,8 +19,14 @@ struct MapperConfig {
     double magnetic_rad_per_sqrt_s = 0.05;
     double magnetic_after_s = 8.0;
     double heading_rad_per_rad = 0.02;  ///< of each turn
-    double tilt_rad = 0.009;            ///< roll and pitch, observed from gravity at each key pose
-    double floor_m = 0.02;              ///< height of the stance foot over its level
+    /// Association needs the heading noise so wide that it covers the worst metal; what is published says how large
+    /// errors usually are, which is this part of it.
+    double typical_heading_share = 0.4;
+    /// Of the length of steps, constant for a wearer: no closure sees it (a closed loop scales to a closed loop), so
+    /// that it only widens what is published of lengths and places.
+    double scale_sigma = 0.02;
+    double tilt_rad = 0.009;  ///< roll and pitch, observed from gravity at each key pose
+    double floor_m = 0.02;    ///< height of the stance foot over its level
   } odometry;
 
   /// The right hand as a measuring tip.

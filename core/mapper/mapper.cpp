@@ -86,7 +86,7 @@ class Mapper::Impl {
   void publish() {
     auto map = std::make_shared<MapSnapshot>();
     const auto walls = cut_walls(state_, config_.walls);
-    const auto marginals = graph::Marginals::compute(state_.graph);
+    const auto marginals = graph::Marginals::compute(with_typical_noise(state_.graph, config_.odometry));
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);

@@ -114,4 +114,12 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
   pose.p.z() += level_z_ - (pose * floor.p_i).z();
 }
 
+graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config) {
+  constexpr double kUnknown = 1.0;  // 1/rad: a restart's heading stays unknown
+  graph::Graph out = graph;
+  for (auto& between : out.between)
+    if (between.sqrt_information(5, 5) > kUnknown) between.sqrt_information.row(5) /= config.typical_heading_share;
+  return out;
+}
+
 }  // namespace kinemap

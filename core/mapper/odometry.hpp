@@ -47,4 +47,7 @@ class Odometry {
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
                                          const MapperConfig::Odometry& config);
 
+/// The graph with the heading noise that errors usually show, for the covariances that are published.
+graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config);
+
 }  // namespace kinemap

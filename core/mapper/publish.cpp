@@ -42,6 +42,12 @@ Eigen::MatrixXd covariance_of(const graph::Marginals& marginals, std::span<const
   return marginals.joint(variables);
 }
 
+/// What the scale of the way, which no closure sees, adds to the sigma of something so far from the first pose, per
+/// axis.
+double with_scale(double sigma, double distance, const MapperConfig::Odometry& config) {
+  return std::sqrt(sigma * sigma + 0.5 * std::pow(config.scale_sigma * distance, 2));
+}
+
 /// Position, heading and the two sizes of a table, screen or seat; `heading` is the index of the heading among the
 /// numbers.
 void set_sigma(MapObject& object, const Eigen::MatrixXd& covariance, bool swapped) {
@@ -109,7 +115,7 @@ double meeting(const Landmark& a, const Landmark& b) {
 
 /// The length of a wall depends on the walls that it meets too; an end that meets none adds what is not known of it.
 void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls, const FiniteWall& wall,
-                    const graph::Marginals& marginals, MapObject& object) {
+                    const graph::Marginals& marginals, const MapperConfig::Odometry& config, MapObject& object) {
   std::vector<std::size_t> involved{wall.landmark};
   const auto meets = [&](const WallEnd& end) -> std::optional<std::size_t> {
     if (end.kind != EndKind::Corner) return std::nullopt;
@@ -139,6 +145,7 @@ void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls,
   const Eigen::MatrixXd covariance = covariance_of(marginals, involved);
   double variance = (j * covariance * j.transpose())(0, 0);
   for (const WallEnd& end : {wall.tail, wall.head}) variance += end.sigma_m * end.sigma_m;
+  variance += std::pow(config.scale_sigma * wall.length(), 2);
   object.sigma.size_m = {std::sqrt(std::max(0.0, variance)), 0.0};
   object.sigma.heading_rad = sigma_of(covariance, 0);
   object.sigma.position_m = sigma_of(covariance, 1);
@@ -182,7 +189,7 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
         add_record(state.landmarks[other], object);
         add_visits(state, other, object);
       }
-      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, object);
+      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, config.odometry, object);
     } else {
       if (landmark.kind == LandmarkKind::Table) describe_table(landmark, object);
       if (landmark.kind == LandmarkKind::Screen) describe_screen(landmark, object);
@@ -191,6 +198,10 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
     }
     std::sort(object.visits.begin(), object.visits.end(),
               [](const Visit& a, const Visit& b) { return a.begin_s < b.begin_s; });
+    if (marginals) {
+      const double away = (object.pose.p - state.graph.poses.front().p).head<2>().norm();
+      object.sigma.position_m = with_scale(object.sigma.position_m, away, config.odometry);
+    }
     objects.push_back(std::move(object));
   }
   std::sort(objects.begin(), objects.end(), [](const MapObject& a, const MapObject& b) { return a.id < b.id; });

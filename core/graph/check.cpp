@@ -30,6 +30,7 @@ class Check {
     for (std::size_t i = 0; i < g_.touch_points.size(); ++i) {
       const TouchPoint& t = g_.touch_points[i];
       require(t.p_hand.allFinite() && t.prior.allFinite(), "touch point", i, "is not finite");
+      require(std::isfinite(t.turn_noise_rad_per_m), "touch point", i, "is not finite");
       require(t.fixed || (t.sigma.allFinite() && t.sigma.minCoeff() > 0.0), "touch point", i,
               "has a sigma that is not positive");
     }

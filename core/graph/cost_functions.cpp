@@ -124,6 +124,11 @@ bool ContactCost::Evaluate(double const* const* x, double* residuals, double** j
   double* d_pose = jacobian(jacobians, 0);
   double* d_landmark = jacobian(jacobians, 1);
   double* d_touch = touch_.fixed ? nullptr : jacobian(jacobians, 2);
+  // Noise at this touching point against that at the expected one, and its relative gradient.
+  const double k2 = touch_.fixed ? 0.0 : touch_.turn_noise_rad_per_m * touch_.turn_noise_rad_per_m;
+  const double variance = 1.0 + k2 * p_hand.squaredNorm();
+  const double wider = std::sqrt(variance / (1.0 + k2 * touch_.prior.squaredNorm()));
+  const Vector3d d_wider = k2 / variance * p_hand;
   double slack = 0.0;
   int row = 0;
   for (const std::uint32_t k : contacts_) {
@@ -139,6 +144,7 @@ bool ContactCost::Evaluate(double const* const* x, double* residuals, double** j
       errors[rows] = surface.side(p_map, f.corner), sigmas[rows++] = f.sigma_corner_m;
 
     double squared_norm = 0.0;
+    for (double& sigma : sigmas) sigma *= wider;
     for (int m = 0; m < rows; ++m) squared_norm += errors[m].value * errors[m].value / (sigmas[m] * sigmas[m]);
     const double scale = robustify(f.loss, squared_norm, slack);
     for (int m = 0; m < rows; ++m, ++row) {
@@ -155,7 +161,8 @@ bool ContactCost::Evaluate(double const* const* x, double* residuals, double** j
         for (int c = 0; c < size; ++c)
           d_landmark[size * row + c] = weight * errors[m].d_landmark[static_cast<std::size_t>(c)];
       }
-      if (d_touch != nullptr) Eigen::Map<Vector3d>(d_touch + 3 * row) = f.T_i_hand.q.conjugate() * g_i;
+      if (d_touch != nullptr)
+        Eigen::Map<Vector3d>(d_touch + 3 * row) = f.T_i_hand.q.conjugate() * g_i - residuals[row] * d_wider;
     }
   }
   if (row < num_residuals()) {

@@ -42,11 +42,17 @@ constexpr int dimension(LandmarkKind kind) {
 }
 
 /// Where the hand touches, in the hand segment's frame (m); a variable with a Gaussian prior, or fixed.
+///
+/// The hand's orientation is noisy itself, so the noise of a contact grows with the lever: its variance at p_hand is
+/// (1 + k²‖p_hand‖²) / (1 + k²‖prior‖²) of what the contact factor says, with k = turn_noise_rad_per_m, the noise of
+/// the orientation over that of the wrist's position. Without that term the estimate is drawn to the wrist, where noisy
+/// turns do no harm (errors in variables; with it, this is total least squares: Golub and Van Loan 1980).
 struct TouchPoint {
   Eigen::Vector3d p_hand = Eigen::Vector3d::Zero();
   Eigen::Vector3d prior = Eigen::Vector3d::Zero();
   Eigen::Vector3d sigma = Eigen::Vector3d::Constant(0.02);
   bool fixed = true;
+  double turn_noise_rad_per_m = 0.0;
 };
 
 /// A robust loss on the squared, whitened norm of one factor's residual; `scale` in standard deviations.

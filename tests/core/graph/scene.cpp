@@ -36,7 +36,7 @@ class Builder {
                     {LandmarkKind::Table, {2.0, 2.1, 0.72, 0.4, 1.4, 0.7}, Vector3d::Zero(), true},
                     {LandmarkKind::Screen, {0.0, 2.0, 1.3, 0.1, 0.9, 0.5, 0.08}, Vector3d::Zero(), true},
                     {LandmarkKind::Seat, {2.2, 1.2, 0.45, 1.0}, Vector3d::Zero(), true}};
-    g_.touch_points = {{{0.03, -0.18, 0.01}, {0.03, -0.18, 0.01}, Vector3d::Constant(0.02), false},
+    g_.touch_points = {{{0.03, -0.18, 0.01}, {0.03, -0.18, 0.01}, Vector3d::Constant(0.02), false, 2.0},
                        {{0.0, -0.09, 0.0}, {0.0, -0.09, 0.0}, Vector3d::Constant(0.02), true}};
   }
 

@@ -54,6 +54,15 @@ struct Sitting {
   double spread_m = 0.0;  ///< standard deviation of the seat position over the still part
 };
 
-using Event = std::variant<KeyPose, Trace, Sitting>;
+/// A finger tip (or palm) was held on one fixed spot while the hand turned about it: a measurement of the touching
+/// point.
+struct Pivot {
+  double begin_s = 0.0;
+  double end_s = 0.0;
+  Eigen::Vector3d p_hand = Eigen::Vector3d::Zero();          ///< touching point in the right-hand segment's frame, m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of it, m²; wide where the turns say nothing
+};
+
+using Event = std::variant<KeyPose, Trace, Pivot, Sitting>;
 
 }  // namespace kinemap

@@ -85,6 +85,19 @@ struct UnresolvedTrace {
   std::string reason;
 };
 
+/// Part of the right hand that touches.
+enum class HandPart : std::uint8_t { Tips, Palm };
+const char* to_string(HandPart part);  ///< "tips", "palm"
+std::optional<HandPart> hand_part_from(const std::string& name);
+
+/// With what the wearer touches, as the contacts (and pivot gestures) tell.
+struct TouchingHand {
+  HandPart part = HandPart::Tips;
+  double probability = 0.0;                          ///< of that part, 0.5 … 1
+  Eigen::Vector3d p_hand = Eigen::Vector3d::Zero();  ///< touching point in the hand segment's frame (origin: wrist), m
+  Eigen::Vector3d sigma_m = Eigen::Vector3d::Zero();
+};
+
 struct GraphSummary {
   std::size_t key_poses = 0;
   std::size_t landmarks = 0;
@@ -106,7 +119,8 @@ struct MapSnapshot {
   std::vector<Doorway> doorways;
   std::vector<TrajectoryPose> trajectory;
   std::vector<UnresolvedTrace> unresolved;
-  Pose T_map_odom;  ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
+  Pose T_map_odom;                   ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
+  std::optional<TouchingHand> hand;  ///< absent until something was touched
   GraphSummary graph;
 };
 

@@ -110,6 +110,18 @@ void fields(V& v, TrackerConfig::Traces& c) {
 }
 
 template <class V>
+void fields(V& v, TrackerConfig::Pivot& c) {
+  v.number("min_duration_s", c.min_duration_s, Range{"s", 0, 3600});
+  v.number("reach_max_s", c.reach_max_s, Range{"s", 0, 3600});
+  v.number("min_turn_rad", c.min_turn_rad, Range{"rad", 0.1, 3.1416});
+  v.number("max_residual_m", c.max_residual_m, Range{"m", 0.001, 1});
+  v.number("useful_m", c.useful_m, Range{"m", 0.001, 1});
+  v.number("noise_m", c.noise_m, Range{"m", 0.0001, 1});
+  v.number("independent_s", c.independent_s, Range{"s", 0.001, 3600});
+  v.number("systematic_m", c.systematic_m, Range{"m", 0.0001, 1});
+}
+
+template <class V>
 void fields(V& v, TrackerConfig::Sitting& c) {
   v.number("thigh_on", c.thigh_on, Range{"1", 0, 1});
   v.number("thigh_low_on", c.thigh_low_on, Range{"1", 0, 1});
@@ -148,6 +160,7 @@ void fields(V& v, TrackerConfig& c) {
   v.section("magnetic", c.magnetic);
   v.section("gesture", c.gesture);
   v.section("traces", c.traces);
+  v.section("pivot", c.pivot);
   v.section("sitting", c.sitting);
 }
 
@@ -170,8 +183,15 @@ template <class V>
 void fields(V& v, MapperConfig::Hand& c) {
   v.number("tip_m", c.tip_m, Range{"m", 0, 100});
   v.number("tip_per_stature", c.tip_per_stature, Range{"1", 0, 0.3});
+  v.number("tip_thickness_m", c.tip_thickness_m, Range{"m", 0, 0.1});
   v.number("tip_sigma_m", c.tip_sigma_m, Range{"m", 0, 1});
+  v.number("body_point_sigma_m", c.body_point_sigma_m, Range{"m", 0.0001, 1});
   v.number("tip_sideways_sigma_m", c.tip_sideways_sigma_m, Range{"m", 0.0001, 1});
+  v.number("palm_share", c.palm_share, Range{"1", 0, 1});
+  v.number("palm_per_stature", c.palm_per_stature, Range{"1", 0, 0.3});
+  v.number("palm_thickness_m", c.palm_thickness_m, Range{"m", 0, 0.1});
+  v.number("palm_sigma_m", c.palm_sigma_m, Range{"m", 0.0001, 1});
+  v.number("turn_noise_rad_per_m", c.turn_noise_rad_per_m, Range{"rad/m", 0, 10});
   v.number("contact_sigma_m", c.contact_sigma_m, Range{"m", 0.0001, 10});
   v.number("contact_correlation_s", c.contact_correlation_s, Range{"s", 0.001, 3600});
   v.number("contact_spacing_m", c.contact_spacing_m, Range{"m", 0.001, 100});

@@ -83,9 +83,13 @@ Json suit_json(const Status& status) {
 }
 
 Json tracker_json(const TrackerStats& t) {
-  return {{"frames", t.frames},         {"key_poses", t.key_poses},
-          {"traces", t.traces},         {"traces_rejected", t.traces_rejected},
-          {"sittings", t.sittings},     {"contacts_thinned_out", t.contacts_thinned_out},
+  return {{"frames", t.frames},
+          {"key_poses", t.key_poses},
+          {"traces", t.traces},
+          {"traces_rejected", t.traces_rejected},
+          {"pivots", t.pivots},
+          {"sittings", t.sittings},
+          {"contacts_thinned_out", t.contacts_thinned_out},
           {"path_m", rounded(t.path_m)}};
 }
 
@@ -108,23 +112,29 @@ Json map_json(const Status& status) {
     for (const auto& object : map.objects) count += object.type == type;
     objects[to_string(type)] = count;
   }
-  return {{"revision", map.revision},
-          {"time", rounded(map.time_s)},
-          {"objects", std::move(objects)},
-          {"rooms", map.rooms.size()},
-          {"unresolved_traces", map.unresolved.size()},
-          {"key_poses", map.graph.key_poses},
-          {"landmarks", map.graph.landmarks},
-          {"contacts", map.graph.contacts},
-          {"loop_closures", map.graph.loop_closures},
-          {"loop_closures_revoked", map.graph.loop_closures_revoked},
-          {"optimisations", map.graph.optimisations},
-          {"optimisations_failed", map.graph.optimisations_failed},
-          {"last_cost", rounded(map.graph.last_cost)},
-          {"solver",
-           {{"messages", solver.messages},
-            {"longest_s", rounded(solver.longest_s, 1e6)},
-            {"busy_s", rounded(solver.busy_s)}}}};
+  Json json = {{"revision", map.revision},
+               {"time", rounded(map.time_s)},
+               {"objects", std::move(objects)},
+               {"rooms", map.rooms.size()},
+               {"unresolved_traces", map.unresolved.size()},
+               {"key_poses", map.graph.key_poses},
+               {"landmarks", map.graph.landmarks},
+               {"contacts", map.graph.contacts},
+               {"loop_closures", map.graph.loop_closures},
+               {"loop_closures_revoked", map.graph.loop_closures_revoked},
+               {"optimisations", map.graph.optimisations},
+               {"optimisations_failed", map.graph.optimisations_failed},
+               {"last_cost", rounded(map.graph.last_cost)},
+               {"solver",
+                {{"messages", solver.messages},
+                 {"longest_s", rounded(solver.longest_s, 1e6)},
+                 {"busy_s", rounded(solver.busy_s)}}}};
+  if (map.hand)
+    json["hand"] = {{"part", to_string(map.hand->part)},
+                    {"probability", rounded(map.hand->probability)},
+                    {"from_wrist", rounded(-map.hand->p_hand.y())},
+                    {"sigma", rounded(map.hand->sigma_m.y())}};
+  return json;
 }
 
 Json api_json(const ApiCounts& api) {

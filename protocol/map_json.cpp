@@ -37,6 +37,14 @@ Json sigma_json(const MapObject& object) {
   return json;
 }
 
+Json hand_json(const TouchingHand& hand) {
+  Json json = {{"part", to_string(hand.part)},
+               {"probability", rounded(hand.probability)},
+               {"touch_point", array_of(hand.p_hand)}};
+  if (hand.sigma_m.allFinite() && hand.sigma_m.minCoeff() > 0.0) json["sigma"] = array_of(hand.sigma_m);
+  return json;
+}
+
 Json graph_json(const GraphSummary& graph) {
   return {{"key_poses", graph.key_poses},
           {"landmarks", graph.landmarks},
@@ -119,6 +127,7 @@ Json to_json(const MapSnapshot& map) {
   for (const UnresolvedTrace& trace : map.unresolved)
     unresolved.push_back({{"begin", rounded(trace.begin_s)}, {"end", rounded(trace.end_s)}, {"reason", trace.reason}});
   json["correction"] = to_json(map.T_map_odom);
+  if (map.hand) json["hand"] = hand_json(*map.hand);
   json["graph"] = graph_json(map.graph);
   return json;
 }

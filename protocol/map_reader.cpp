@@ -99,6 +99,19 @@ Doorway read_doorway(const JsonCursor& json) {
   return doorway;
 }
 
+TouchingHand read_hand(const JsonCursor& json) {
+  TouchingHand hand;
+  const std::string name = json.at("part").string();
+  if (const auto part = hand_part_from(name))
+    hand.part = *part;
+  else
+    json.at("part").fail("expected \"tips\" or \"palm\", got \"" + name + "\"");
+  hand.probability = json.at("probability").number();
+  hand.p_hand = json.at("touch_point").vector<3>();
+  if (json.has("sigma")) hand.sigma_m = json.at("sigma").vector<3>();
+  return hand;
+}
+
 GraphSummary read_graph(const JsonCursor& json) {
   GraphSummary graph;
   graph.key_poses = json.at("key_poses").count();
@@ -136,6 +149,7 @@ Result<MapSnapshot> map_from_text(const std::string& text) {
   for (const JsonCursor& trace : root.at("unresolved").items())
     map.unresolved.push_back({trace.at("begin").number(), trace.at("end").number(), trace.at("reason").string()});
   map.T_map_odom = read_pose(root.at("correction"));
+  if (root.has("hand")) map.hand = read_hand(root.at("hand"));
   map.graph = read_graph(root.at("graph"));
   if (error) return *error;
   return map;

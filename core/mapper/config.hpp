@@ -32,10 +32,17 @@ struct MapperConfig {
   /// The right hand as a measuring tip.
   struct Hand {
     double tip_m = 0.0;  ///< wrist to touching point; 0: from the suit's body points, else from the wearer's stature
-    double tip_per_stature = 0.105;  ///< finger tip beyond the wrist as a part of the body height
-    double tip_sigma_m =
-        0.04;  ///< how far the touching point may lie along the hand from there; estimated, 0: taken as it is
+    double tip_per_stature = 0.105;       ///< finger tip beyond the wrist as a part of the body height
+    double tip_thickness_m = 0.01;        ///< from the hand's axis to the pads of the fingers
+    double tip_sigma_m = 0.025;           ///< how far from there fingers touch, along the hand; 0: taken as it is
+    double body_point_sigma_m = 0.02;    ///< the same where the suit's body points or `tip_m` say where the tip is
     double tip_sideways_sigma_m = 0.015;  ///< the same across the hand
+    double palm_share = 0.25;             ///< of the wearers who touch with the flat palm; 0: nobody does
+    double palm_per_stature = 0.0525;     ///< middle of the palm beyond the wrist as a part of the body height
+    double palm_thickness_m = 0.02;       ///< from the hand's axis to the palm
+    double palm_sigma_m = 0.02;           ///< how far from there palms touch, along the hand
+    double turn_noise_rad_per_m = 2.4;    ///< noise of the hand's orientation over that of the wrist's position: three
+                                          ///< joints that err alike, √3 / 0.72 m
     double contact_sigma_m = 0.03;        ///< of one independent contact: arm chain, jitter, imperfect touch
     double contact_correlation_s = 2.0;   ///< contacts within this time err together and count as one
     double contact_spacing_m = 0.06;      ///< contacts are thinned to this distance before they become factors

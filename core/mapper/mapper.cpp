@@ -9,6 +9,7 @@
 #include "core/mapper/publish.hpp"
 #include "core/mapper/resolve.hpp"
 #include "core/mapper/rooms.hpp"
+#include "core/mapper/touch.hpp"
 #include "core/mapper/walls.hpp"
 
 namespace kinemap {
@@ -16,8 +17,8 @@ namespace kinemap {
 class Mapper::Impl {
  public:
   explicit Impl(const MapperConfig& config)
-      : config_(config), odometry_(config.odometry), resolver_(config.landmarks), closer_(config) {
-    state_.graph.touch_points.push_back(touch_point(config.hand, {}, std::nullopt));
+      : config_(config), odometry_(config.odometry), resolver_(config.landmarks), closer_(config), touch_(config.hand) {
+    state_.graph.touch_points.push_back(touch_.prior());
   }
 
   void set_wearer(const WearerInfo& wearer) { wearer_ = wearer; }
@@ -32,17 +33,29 @@ class Mapper::Impl {
 
   bool add(const Trace& trace) {
     time_s_ = trace.end_s;
-    expect_touch(touch_point(config_.hand, wearer_, trace.stature_m));
+    touched_ = true;
+    touch_.expect(wearer_, trace.stature_m);
+    renew_touch_prior();
     const auto found = resolver_.resolve(trace, state_.graph, kTouch, odometry_.floor_z());
     if (found.joined) unresolved_.pop_back();  // the trace before was its beginning
     if (found.extraction.observations.empty())
       unresolved_.push_back({trace.begin_s, trace.end_s, found.extraction.reason});
+    for (const auto& observation : found.extraction.observations) touch_.see(observation, found.trace, state_.graph);
     for (const auto& observation : found.extraction.observations)
       if (observation.landmark.kind != graph::LandmarkKind::Wall)
         odometry_.suspect_heading(trace.begin_s - kApproach, trace.end_s + config_.odometry.magnetic_after_s,
                                   state_.graph);
     for (const auto& observation : found.extraction.observations)
       associate(add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
+    publish();
+    return true;
+  }
+
+  bool add(const Pivot& pivot) {
+    time_s_ = pivot.end_s;
+    touched_ = true;
+    touch_.add(pivot);
+    renew_touch_prior();
     publish();
     return true;
   }
@@ -57,6 +70,7 @@ class Mapper::Impl {
   void finish() {
     if (state_.graph.poses.empty()) return;
     closer_.settle(state_, config_.solver.final_iterations);
+    if (judge_touch()) closer_.settle(state_, config_.solver.final_iterations);
     closer_.revise(state_);
     if (closer_.reconsider(state_)) closer_.settle(state_, config_.solver.final_iterations);
     publish();
@@ -71,15 +85,30 @@ class Mapper::Impl {
   static constexpr std::size_t kTrajectoryLag =
       10;  ///< key poses after which a walk is published without news of objects
 
-  /// What is expected of the hand may change as more becomes known of the wearer; what was estimated stays while it
-  /// does not.
-  void expect_touch(const graph::TouchPoint& expected) {
+  /// What is expected of the hand changes as more becomes known of the wearer. What was estimated moves along until the
+  /// next optimisation. True when it changed.
+  bool renew_touch_prior() {
     graph::TouchPoint& touch = state_.graph.touch_points[kTouch];
-    if ((touch.prior - expected.prior).norm() > 1e-3) touch = expected;
+    graph::TouchPoint expected = touch_.prior();
+    const double shift = (expected.prior - touch.prior).norm() + (expected.sigma - touch.sigma).norm();
+    if (shift < 1e-3) return false;
+    expected.p_hand += touch.p_hand - touch.prior;
+    touch = expected;
+    return true;
+  }
+
+  /// Tips or palm, by the optimum that was just reached. True when that changed what is expected of the hand.
+  bool judge_touch() {
+    const auto marginals = graph::Marginals::compute(state_.graph);
+    if (!marginals) return false;
+    touch_.judge(state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
+    return renew_touch_prior();
   }
 
   void associate(std::size_t newcomer) {
-    if (closer_.resolve(state_, newcomer)) closer_.reconsider(state_);
+    if (!closer_.resolve(state_, newcomer)) return;
+    closer_.reconsider(state_);
+    judge_touch();
   }
 
   /// Publishes the objects as the graph has them now.
@@ -91,6 +120,9 @@ class Mapper::Impl {
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);
     map->unresolved = unresolved_;
+    if (marginals && touched_)
+      map->hand =
+          describe_hand(touch_, state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
     publish(std::move(map));
   }
 
@@ -116,6 +148,8 @@ class Mapper::Impl {
   Odometry odometry_;
   TraceResolver resolver_;
   LoopCloser closer_;
+  TouchBelief touch_;
+  bool touched_ = false;  ///< a trace or pivot gesture has been seen
   MapState state_;
   std::vector<UnresolvedTrace> unresolved_;
   double time_s_ = 0.0;

@@ -12,8 +12,6 @@ using graph::ContactFactor;
 using graph::Edge;
 using graph::LandmarkKind;
 
-constexpr double kTypicalTip = 0.18;  // m, wrist to finger tip of a wearer of whom nothing is known
-
 /// Indices into observation.contacts, thinned by distance; contacts in corners and contacts without a side are treated
 /// as they are: the former always kept, the latter left out for rectangles, of which they would only pull on the plane.
 std::vector<std::size_t> thinned(const Observation& observation, const std::vector<TracePoint>& points,
@@ -126,21 +124,6 @@ std::size_t add_seat(const Sitting& sitting, double floor_z, const MapperConfig&
       {landmark, sitting.key_pose, 0, 0, state.graph.seats.size(), sitting.begin_s, sitting.end_s});
   state.graph.seats.push_back(factor);
   return landmark;
-}
-
-graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer,
-                              std::optional<double> stature_m) {
-  // In the T-pose the right hand points along its −y axis.
-  Eigen::Vector3d tip(0.0, -kTypicalTip, 0.0);
-  if (wearer.stature_m) stature_m = wearer.stature_m;
-  if (config.tip_m > 0.0)
-    tip.y() = -config.tip_m;
-  else if (wearer.p_hand_fingertip)
-    tip = *wearer.p_hand_fingertip;
-  else if (stature_m)
-    tip.y() = -config.tip_per_stature * *stature_m;
-  const Eigen::Vector3d sigma(config.tip_sideways_sigma_m, config.tip_sigma_m, config.tip_sideways_sigma_m);
-  return {tip, tip, sigma, config.tip_sigma_m <= 0.0};
 }
 
 }  // namespace kinemap

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "core/body.hpp"
 #include "core/events.hpp"
 #include "core/landmarks/extract.hpp"
 #include "core/mapper/config.hpp"
@@ -23,10 +21,5 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
 
 /// Appends a seat as a landmark of its own. Returns the landmark's index.
 std::size_t add_seat(const Sitting& sitting, double floor_z, const MapperConfig& config, MapState& state);
-
-/// Touching point of the right hand in its segment frame, m: configured, else from the suit's body points, else from
-/// the stature.
-graph::TouchPoint touch_point(const MapperConfig::Hand& config, const WearerInfo& wearer,
-                              std::optional<double> stature_m);
 
 }  // namespace kinemap

@@ -78,6 +78,18 @@ struct TrackerConfig {
     std::size_t max_contacts = 20000;  ///< bound of a trace; further contacts are counted, not kept
   } traces;
 
+  /// The pivot gesture: the touching point held on one spot while the hand turns about it (a trace that draws nothing).
+  struct Pivot {
+    double min_duration_s = 3.0;   ///< on the spot; 0: no pivot gestures
+    double reach_max_s = 2.5;      ///< way of the hand to the spot, and back
+    double min_turn_rad = 0.6;     ///< largest turn of the hand
+    double max_residual_m = 0.05;  ///< RMS distance of the touching point from the spot; more has drawn something
+    double useful_m = 0.03;        ///< a gesture that leaves the distance from the wrist less certain says nothing
+    double noise_m = 0.015;        ///< of one independent sample along each axis, at least: arm chain and jitter
+    double independent_s = 1.5;    ///< samples within this time err together and count as one
+    double systematic_m = 0.007;   ///< what the residuals cannot tell: the hand sensor's own misalignment
+  } pivot;
+
   struct Sitting {
     double thigh_on = 0.40;      ///< (hip over knee) / thigh length, mean of both legs: 1 standing, 0 level thighs
     double thigh_low_on = 0.53;  ///< the same while the hips are below low_hips_m: short wearers on ordinary chairs

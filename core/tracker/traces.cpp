@@ -8,8 +8,8 @@
 
 namespace kinemap {
 
-std::optional<Trace> TraceFold::step(double time_s, const GestureState& gesture) {
-  std::optional<Trace> ended;
+std::optional<Event> TraceFold::step(double time_s, const GestureState& gesture) {
+  std::optional<Event> ended;
   if (open_ && gesture.both_since_s) seen_s_ = std::min(seen_s_, *gesture.both_since_s);
   const double unseen_s = time_s - seen_s_;
   if (open_ && unseen_s > (gesture.near ? config_.gap_s : config_.dropout_s)) ended = close();
@@ -42,6 +42,7 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
     }
   }
   trace_.contacts.push_back({frame.time_s, latest.id, latest.T_odom_pelvis.inverse() * T_odom_hand});
+  hand_.push_back({frame.time_s, T_odom_hand});
   kept_ = T_odom_hand;
   kept_s_ = frame.time_s;
 }
@@ -52,15 +53,18 @@ void TraceFold::stretch(const Eigen::Vector3d& wrist) {
   extent_m_ = std::max({extent_m_, from_first, (wrist - farthest_wrist_).norm()});
 }
 
-std::optional<Trace> TraceFold::close() {
+std::optional<Event> TraceFold::close() {
   if (!open_) return std::nullopt;
   open_ = false;
   Trace trace = std::exchange(trace_, {});
+  std::vector<HandSample> hand = std::exchange(hand_, {});
   const double extent_m = std::exchange(extent_m_, 0.0);
   if (!held_) return std::nullopt;
   trace.end_s = seen_s_;
   // What the hand did after the gesture was last seen is not part of it.
   while (!trace.contacts.empty() && trace.contacts.back().time_s > seen_s_) trace.contacts.pop_back();
+  hand.resize(trace.contacts.size());
+  if (auto pivot = find_pivot(hand, pivot_)) return pivot;
   if (trace.contacts.empty() || trace.end_s - trace.begin_s < config_.min_duration_s ||
       extent_m < config_.min_extent_m) {
     ++rejected_;

@@ -3,29 +3,31 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/body.hpp"
 #include "core/events.hpp"
 #include "core/tracker/config.hpp"
 #include "core/tracker/gesture.hpp"
+#include "core/tracker/pivot.hpp"
 
 namespace kinemap {
 
-/// Records the right hand while the gesture lasts. For each frame: step(), then record() if open(). Memory is bounded
-/// by max_contacts.
+/// Records the right hand while the gesture lasts. For each frame: step(), then record() if open(). What comes of it is
+/// a Trace, or a Pivot when the hand drew nothing but turned about one spot. Memory is bounded by max_contacts.
 class TraceFold {
  public:
-  explicit TraceFold(const TrackerConfig::Traces& config) : config_(config) {}
+  TraceFold(const TrackerConfig::Traces& config, const TrackerConfig::Pivot& pivot) : config_(config), pivot_(pivot) {}
 
   /// Opens, keeps or ends the trace; returns one that has just ended and is long enough in time and space. It opens
   /// when the left hand comes near the hip, so that nothing of the right hand is missed, and is forgotten when the left
   /// hand does not stay.
-  std::optional<Trace> step(double time_s, const GestureState& gesture);
+  std::optional<Event> step(double time_s, const GestureState& gesture);
   /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
   /// frame.
   void record(const SuitFrame& frame, const KeyPose& latest);
   /// Ends an open trace (end of the stream, discontinuity).
-  std::optional<Trace> close();
+  std::optional<Event> close();
 
   [[nodiscard]] bool open() const { return open_; }
   /// Open, and nothing has been recorded yet: the first contact wants a key pose of its own.
@@ -37,10 +39,12 @@ class TraceFold {
   void stretch(const Eigen::Vector3d& wrist);
 
   TrackerConfig::Traces config_;
+  TrackerConfig::Pivot pivot_;
   bool open_ = false;
   bool held_ = false;  ///< the gesture has been held during this trace
   Trace trace_;
-  double seen_s_ = 0.0;    ///< last frame with the gesture
+  std::vector<HandSample> hand_;  ///< the trace's contacts in the odom frame
+  double seen_s_ = 0.0;           ///< last frame with the gesture
   double extent_m_ = 0.0;  ///< a lower bound (≥ half) of the wrist's farthest two places while the gesture was seen
   Eigen::Vector3d first_wrist_ = Eigen::Vector3d::Zero();     ///< odom frame
   Eigen::Vector3d farthest_wrist_ = Eigen::Vector3d::Zero();  ///< from the first one, odom frame

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/tracker/tracker.hpp"
 
-#include <type_traits>
 #include <utility>
 
 #include "core/tracker/feet.hpp"
@@ -22,7 +21,7 @@ class Tracker::Impl {
         stance_(config.stance),
         magnetic_(config.magnetic),
         gesture_(config.gesture),
-        traces_(config.traces),
+        traces_(config.traces, config.pivot),
         sitting_(config.sitting) {}
 
   void step(const SuitFrame& frame, std::vector<Event>& events) {
@@ -61,13 +60,13 @@ class Tracker::Impl {
     magnetic_.reset();
   }
 
-  template <typename T>
-  void put(std::optional<T>&& event, std::vector<Event>& events) {
+  void put(std::optional<Event>&& event, std::vector<Event>& events) {
     if (!event) return;
-    if constexpr (std::is_same_v<T, KeyPose>) ++stats_.key_poses;
-    if constexpr (std::is_same_v<T, Trace>) ++stats_.traces;
-    if constexpr (std::is_same_v<T, Sitting>) ++stats_.sittings;
-    events.emplace_back(std::move(*event));
+    stats_.key_poses += std::holds_alternative<KeyPose>(*event);
+    stats_.traces += std::holds_alternative<Trace>(*event);
+    stats_.pivots += std::holds_alternative<Pivot>(*event);
+    stats_.sittings += std::holds_alternative<Sitting>(*event);
+    events.push_back(std::move(*event));
   }
 
   void count() {

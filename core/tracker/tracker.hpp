@@ -17,6 +17,7 @@ struct TrackerStats {
   std::uint64_t key_poses = 0;
   std::uint64_t traces = 0;
   std::uint64_t traces_rejected = 0;  ///< gestures too short or without motion of the right hand
+  std::uint64_t pivots = 0;
   std::uint64_t sittings = 0;
   std::uint64_t contacts_thinned_out = 0;  ///< contacts left out because a trace reached its limit
   double path_m = 0.0;                     ///< length of the level pelvis path

@@ -40,6 +40,17 @@ std::string losses(const AssemblerStats& stream) {
   return text;
 }
 
+std::string hand_line(const MapSnapshot& map, const TrackerStats& tracker) {
+  if (!map.hand) return "";
+  const TouchingHand& hand = *map.hand;
+  const char* name = hand.part == HandPart::Palm ? "the palm" : "the finger tips";
+  std::string text = format("touches with %s (%.0f %%), %.3f m", name, 100.0 * hand.probability, -hand.p_hand.y());
+  if (hand.sigma_m.y() > 0.0) text += format(" ± %.3f", hand.sigma_m.y());
+  text += " from the wrist";
+  if (tracker.pivots) text += format("; %llu pivot gestures", static_cast<unsigned long long>(tracker.pivots));
+  return text + '\n';
+}
+
 std::string report(const BatchResult& result) {
   const RecordingSummary& recording = result.recording;
   const GraphSummary& graph = result.map->graph;
@@ -52,8 +63,9 @@ std::string report(const BatchResult& result) {
                  result.tracker.path_m, graph.key_poses, static_cast<unsigned long long>(result.tracker.traces),
                  static_cast<unsigned long long>(result.tracker.traces_rejected), result.map->unresolved.size(),
                  static_cast<unsigned long long>(result.tracker.sittings));
-  text += format("loop closures %zu (%zu taken back) · optimisations %zu (%zu failed)\n\n", graph.loop_closures,
+  text += format("loop closures %zu (%zu taken back) · optimisations %zu (%zu failed)\n", graph.loop_closures,
                  graph.loop_closures_revoked, graph.optimisations, graph.optimisations_failed);
+  text += hand_line(*result.map, result.tracker) + '\n';
   if (result.map->objects.empty())
     text += "no objects: nobody sat down, or traced anything with the left hand on the hip\n";
   return text;

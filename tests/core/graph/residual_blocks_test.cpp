@@ -120,8 +120,12 @@ double plain_cost(const Graph& g) {
     if (!g.landmarks[f.landmark].active) continue;
     const Eigen::Vector3d p = g.poses[f.i] * (f.T_i_hand * g.touch_points[f.touch].p_hand);
     const Eigen::Vector3d e = contact_error(g.landmarks[f.landmark], p, f.edge, f.corner);
-    sum += evaluate(f.loss, std::pow(e(0) / f.sigma_plane_m, 2) + std::pow(e(1) / f.sigma_edge_m, 2) +
-                                std::pow(e(2) / f.sigma_corner_m, 2))
+    const TouchPoint& t = g.touch_points[f.touch];
+    const double k2 = t.fixed ? 0.0 : std::pow(t.turn_noise_rad_per_m, 2);
+    const double wider = (1.0 + k2 * t.p_hand.squaredNorm()) / (1.0 + k2 * t.prior.squaredNorm());
+    sum += evaluate(f.loss, (std::pow(e(0) / f.sigma_plane_m, 2) + std::pow(e(1) / f.sigma_edge_m, 2) +
+                             std::pow(e(2) / f.sigma_corner_m, 2)) /
+                                wider)
                .rho;
   }
   for (const auto& f : g.seats) {

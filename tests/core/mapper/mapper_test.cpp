@@ -156,6 +156,7 @@ TEST(Mapper, TheTouchingPointIsEstimated) {
   }
   MapperConfig wrong = config();
   wrong.hand.tip_m = 0.10;
+  wrong.hand.body_point_sigma_m = 0.04;
   Mapper free(wrong);
   wrong.hand.tip_sigma_m = 0.0;
   Mapper fixed(wrong);

@@ -65,7 +65,7 @@ void reload(const Arguments& arguments, Daemon& daemon) {
 }
 
 int run(const Arguments& arguments, const Config& config) {
-  const BlockedSignals signals;  // before the first thread, which inherits it
+  Signals signals;
   auto started = Daemon::start(config);
   if (const auto* error = std::get_if<StartError>(&started)) {
     spdlog::error("{}", error->message);

@@ -1,35 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/signals.hpp"
 
-#include <pthread.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #ifdef KINEMAP_SYSTEMD
 #include <systemd/sd-daemon.h>
 #endif
 
+#include <csignal>
 #include <memory>
 
 namespace kinemap {
 
-BlockedSignals::BlockedSignals() {
-  sigemptyset(&set_);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set_, signal);
-  pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+Signals::Signals() : set_(context_, SIGINT, SIGTERM, SIGHUP) {
   // A client that goes away while it is written to is an error code, not the end.
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-Signal BlockedSignals::wait() const {
-  int signal = 0;
-  while (sigwait(&set_, &signal) != 0) {
-  }
-  if (signal == SIGHUP) return Signal::Reload;
-  sigset_t ending;
-  sigemptyset(&ending);
-  sigaddset(&ending, SIGINT);
-  sigaddset(&ending, SIGTERM);
-  pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
+Signal Signals::wait() {
+  int caught = 0;
+  set_.async_wait([&](const boost::system::error_code&, int signal) { caught = signal; });
+  context_.restart();
+  context_.run();
+  if (caught == SIGHUP) return Signal::Reload;
+  set_.clear();
   return Signal::End;
 }
 

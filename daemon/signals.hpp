@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <csignal>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
 
 namespace kinemap {
 
 enum class Signal { End, Reload };
 
-/// Holds SIGINT, SIGTERM and SIGHUP back from this thread and all that it starts, to be waited for in one place. A
-/// second SIGINT or SIGTERM, while the program ends, ends it at once.
-class BlockedSignals {
+/// SIGINT, SIGTERM and SIGHUP, caught for the whole process and waited for in one place. They are handled, not only
+/// blocked: libraries (OpenBLAS) start threads before main(), which have no part in our mask, and one of them taking
+/// the signal must not end the daemon. A second SIGINT or SIGTERM, while the program ends, ends it at once.
+class Signals {
  public:
-  BlockedSignals();
-  BlockedSignals(const BlockedSignals&) = delete;
-  BlockedSignals& operator=(const BlockedSignals&) = delete;
+  Signals();
 
-  [[nodiscard]] Signal wait() const;
+  [[nodiscard]] Signal wait();
 
  private:
-  sigset_t set_;
+  boost::asio::io_context context_;
+  boost::asio::signal_set set_;
 };
 
 /// Tells systemd, when it started us (Type=notify); nothing otherwise.

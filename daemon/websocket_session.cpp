@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "daemon/websocket_session.hpp"
+
+#include <array>
+#include <utility>
+
+namespace kinemap {
+namespace {
+
+namespace websocket = beast::websocket;
+
+constexpr std::size_t kLongestMessage = 256 * 1024;  // from a client
+constexpr std::size_t kSlowestBytesPerS = 64 * 1024;
+constexpr std::chrono::seconds kIdleTimeout{30};
+
+}  // namespace
+
+WebSocketSession::WebSocketSession(beast::tcp_stream stream, WebContext& context, ConnectionSlot slot)
+    : stream_(std::move(stream)), context_(context), slot_(std::move(slot)) {}
+
+void WebSocketSession::accept(http::request<http::string_body> request, const std::string& subprotocol) {
+  auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::server);
+  timeouts.idle_timeout = kIdleTimeout;
+  timeouts.keep_alive_pings = true;
+  stream_.set_option(timeouts);
+  stream_.set_option(websocket::permessage_deflate{});  // off
+  stream_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
+    response.set(http::field::server, "kinemapd");
+    if (!subprotocol.empty()) response.set(http::field::sec_websocket_protocol, subprotocol);
+  }));
+  stream_.read_message_max(kLongestMessage);
+  request_ = std::move(request);
+  stream_.async_accept(request_, [self = shared_from_this()](ErrorCode error) {
+    if (error) return;
+    ++self->context_.api.counts().streams;
+    self->on_open();
+    self->write();
+    self->read();
+  });
+}
+
+void WebSocketSession::read() {
+  stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    if (error) return self->end();
+    const auto data = self->buffer_.data();
+    self->on_message({static_cast<const char*>(data.data()), data.size()}, self->stream_.got_text());
+    self->buffer_.consume(self->buffer_.size());
+    self->write();
+    if (!self->ended_) self->read();
+  });
+}
+
+void WebSocketSession::write() {
+  if (writing_ || ended_) return;
+  auto message = std::make_shared<const Outgoing>(next());
+  if (!message->text) return;
+  writing_ = true;
+  write_deadline_ = Clock::now() + context_.stall + std::chrono::seconds(message->size() / kSlowestBytesPerS);
+  stream_.binary(message->binary);
+  const std::array<net::const_buffer, 2> buffers{net::buffer(message->head), net::buffer(*message->text)};
+  stream_.async_write(buffers, [self = shared_from_this(), message](ErrorCode error, std::size_t) {
+    self->writing_ = false;
+    if (error) return self->end();
+    self->write();
+  });
+}
+
+void WebSocketSession::check_stall(Clock::time_point now) {
+  if (writing_ && now > write_deadline_) give_up();
+}
+
+void WebSocketSession::give_up() {
+  if (ended_) return;
+  ++context_.api.counts().slow_clients_closed;
+  ErrorCode ignored;
+  beast::get_lowest_layer(stream_).socket().close(ignored);
+  end();
+}
+
+void WebSocketSession::end() {
+  if (std::exchange(ended_, true)) return;
+  --context_.api.counts().streams;
+  on_end();
+}
+
+}  // namespace kinemap

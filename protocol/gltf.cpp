@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "protocol/floor.hpp"
 #include "protocol/gltf_builder.hpp"
 #include "protocol/map_json.hpp"
 #include "protocol/triangulate.hpp"
@@ -55,19 +56,6 @@ Mesh floor_mesh(const Room& room, double z) {
   return mesh;
 }
 
-/// Where the floor of a room is drawn: at the lowest corner of its walls.
-double floor_of(const MapSnapshot& map, const Room& room) {
-  double z = 0.0;
-  bool known = false;
-  for (const MapObject& object : map.objects) {
-    if (!object.corners || std::find(room.wall_ids.begin(), room.wall_ids.end(), object.id) == room.wall_ids.end())
-      continue;
-    for (const Eigen::Vector3d& corner : *object.corners) z = known ? std::min(z, corner.z()) : corner.z();
-    known = true;
-  }
-  return z;
-}
-
 }  // namespace
 
 std::string glb_bytes(const MapSnapshot& map) {
@@ -79,7 +67,7 @@ std::string glb_bytes(const MapSnapshot& map) {
   const int path = builder.add_material("trajectory", {0.90, 0.25, 0.05, 1.0});
 
   for (const Room& room : map.rooms)
-    if (const Mesh mesh = floor_mesh(room, floor_of(map, room)); !mesh.indices.empty())
+    if (const Mesh mesh = floor_mesh(room, floor_height(map, &room)); !mesh.indices.empty())
       builder.add_node("room " + std::to_string(room.id), mesh, floor, to_json(room));
   for (const MapObject& object : map.objects) {
     const bool planar = object.plane && object.corners;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/floor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace kinemap {
+namespace {
+
+constexpr double kLongestStep = 2.0;  // m
+constexpr double kMostCells = 1e6;
+constexpr double kRounding = 1e-9;  // a way that ends where a cell ends needs no cell more
+
+CellGrid empty_grid(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m) {
+  Eigen::Array2d low = trajectory.front().T_map_pelvis.p.head<2>(), high = low;
+  for (const TrajectoryPose& pose : trajectory) {
+    low = low.min(pose.T_map_pelvis.p.head<2>().array());
+    high = high.max(pose.T_map_pelvis.p.head<2>().array());
+  }
+  CellGrid grid;
+  Eigen::Array2d first, size;
+  for (grid.cell_m = cell_m;; grid.cell_m *= 2) {
+    first = ((low - reach_m) / grid.cell_m + kRounding).floor();
+    size = ((high + reach_m) / grid.cell_m - kRounding).ceil() - first;
+    if (size.prod() <= kMostCells) break;
+  }
+  grid.origin = first * grid.cell_m;
+  grid.columns = static_cast<std::size_t>(size.x());
+  grid.rows = static_cast<std::size_t>(size.y());
+  grid.cells.assign(grid.columns * grid.rows, 0);
+  return grid;
+}
+
+/// Marks the cells whose middle is within reach of the way from a to b.
+void mark(CellGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach_m) {
+  const auto index = [&](double p, double origin, std::size_t count) {
+    return static_cast<std::size_t>(
+        std::clamp(std::floor((p - origin) / grid.cell_m), 0.0, static_cast<double>(count - 1)));
+  };
+  const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
+  const std::size_t last_row = index(high.y(), grid.origin.y(), grid.rows);
+  const std::size_t last_column = index(high.x(), grid.origin.x(), grid.columns);
+  const Eigen::Vector2d ab = b - a;
+  for (std::size_t row = index(low.y(), grid.origin.y(), grid.rows); row <= last_row; ++row)
+    for (std::size_t column = index(low.x(), grid.origin.x(), grid.columns); column <= last_column; ++column) {
+      const Eigen::Vector2d middle = grid.origin + grid.cell_m * Eigen::Vector2d(static_cast<double>(column) + 0.5,
+                                                                                 static_cast<double>(row) + 0.5);
+      const double along = ab.squaredNorm() > 0 ? std::clamp((middle - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
+      if ((middle - a - along * ab).norm() <= reach_m) grid.at(column, row) = 1;
+    }
+}
+
+}  // namespace
+
+double floor_height(const MapSnapshot& map, const Room* room) {
+  std::optional<double> z;
+  for (const MapObject& object : map.objects) {
+    if (object.type != ObjectType::Wall || !object.corners) continue;
+    if (room && std::find(room->wall_ids.begin(), room->wall_ids.end(), object.id) == room->wall_ids.end()) continue;
+    for (const Eigen::Vector3d& corner : *object.corners) z = std::min(z.value_or(corner.z()), corner.z());
+  }
+  return z.value_or(0.0);
+}
+
+CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m) {
+  if (trajectory.empty()) return {};
+  CellGrid grid = empty_grid(trajectory, cell_m, reach_m);
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector2d to = trajectory[i].T_map_pelvis.p.head<2>();
+    const Eigen::Vector2d from = i > 0 ? trajectory[i - 1].T_map_pelvis.p.head<2>().eval() : to;
+    mark(grid, (to - from).norm() <= kLongestStep ? from : to, to, reach_m);
+  }
+  return grid;
+}
+
+}  // namespace kinemap

@@ -26,6 +26,12 @@ constexpr double kPalmOddsFlat = 2.4, kPalmOddsSlanted = 0.35;
 // In the T-pose the right hand points along its −y axis with the palm down: what touches lies on the −z side.
 Vector3d point_of(double along_m, double thickness_m) { return {0.0, -along_m, -thickness_m}; }
 
+/// The suit's points of the hand lie on its skeleton; what touches is the skin beneath.
+Vector3d on_skin(Vector3d p, double thickness_m) {
+  p.z() = std::min(p.z(), -thickness_m);
+  return p;
+}
+
 Matrix3d covariance_of(double along_m, double across_m) {
   return Vector3d(across_m * across_m, along_m * along_m, across_m * across_m).asDiagonal();
 }
@@ -73,11 +79,11 @@ void TouchBelief::expect(const WearerInfo& wearer, std::optional<double> stature
   const bool configured = config_.tip_m > 0.0;
   const double palm_share = configured || taken_as_it_is() ? 0.0 : config_.palm_share;
   auto& [tips, palm] = expected_;
-  tips.mean =
-      configured
-          ? point_of(config_.tip_m, 0.0)
-          : wearer.p_hand_fingertip.value_or(point_of(config_.tip_per_stature * stature, config_.tip_thickness_m));
-  palm.mean = wearer.p_hand_palm.value_or(point_of(config_.palm_per_stature * stature, config_.palm_thickness_m));
+  const Vector3d tip = configured ? point_of(config_.tip_m, 0.0)
+                                  : wearer.p_hand_fingertip.value_or(point_of(config_.tip_per_stature * stature, 0.0));
+  tips.mean = on_skin(tip, config_.tip_thickness_m);
+  palm.mean =
+      on_skin(wearer.p_hand_palm.value_or(point_of(config_.palm_per_stature * stature, 0.0)), config_.palm_thickness_m);
   const bool measured = configured || wearer.p_hand_fingertip;
   const double tip_sigma_m = measured ? config_.body_point_sigma_m : config_.tip_sigma_m;
   tips.covariance = covariance_of(std::max(tip_sigma_m, 1e-4), config_.tip_sideways_sigma_m);

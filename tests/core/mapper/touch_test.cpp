@@ -40,7 +40,9 @@ TEST(TouchBelief, BodyPointsAndConfigurationComeWithTheirOwnSigma) {
   wearer.p_hand_fingertip = Vector3d(0.01, -0.2, 0.0);
   TouchBelief belief(config);
   belief.expect(wearer, 1.6);
-  EXPECT_LT((belief.prior().prior - *wearer.p_hand_fingertip).norm(), 1e-12);
+  // The suit's point is one of the skeleton; what touches is the skin beneath.
+  const Vector3d skin = *wearer.p_hand_fingertip - Vector3d(0.0, 0.0, config.tip_thickness_m);
+  EXPECT_LT((belief.prior().prior - skin).norm(), 1e-12);
   EXPECT_NEAR(belief.prior().sigma.y(), config.body_point_sigma_m, 1e-9);
   EXPECT_LT(config.body_point_sigma_m, config.tip_sigma_m);
   config.tip_m = 0.12;

@@ -23,7 +23,7 @@ SuitSink Daemon::suit_sink() {
 }
 
 Sources Daemon::sources() {
-  return {[this] { return pipeline_.map(); }, [this] { return pipeline_.live_pose(); },
+  return {[this] { return pipeline_.map(); }, [this] { return pipeline_.live_body(); },
           [this] { return receiver_->state(); }, [this] { return pipeline_.stats(); },
           [this] { return pipeline_.take_notice(); }};
 }

@@ -80,7 +80,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (!beast::websocket::is_upgrade(request)) return std::nullopt;
     const auto target = view(request.target());
     if (target.substr(0, target.find('?')) != "/api/v1/stream")
-      return ApiError{404, "not_found", "the WebSocket is at /api/v1/stream"};
+      return ApiError{.status = 404,
+                      .code = "not_found",
+                      .message = "the WebSocket is at /api/v1/stream",
+                      .nearest = "/api/v1/stream"};
     if (!origin_allowed(view(request[http::field::origin]), host))
       return ApiError{403, "forbidden_origin", "pages of other hosts may not open the stream"};
     return std::nullopt;
@@ -99,10 +102,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response->version(11);
     response->set(http::field::server, "kinemapd");
     response->set(http::field::content_type, reply_.content_type);
-    response->set(http::field::cache_control, "no-store");
+    response->set(http::field::cache_control, reply_.immutable ? "public, max-age=31536000, immutable" : "no-store");
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Content-Security-Policy", "default-src 'self' 'unsafe-inline'; frame-ancestors 'none'");
-    if (reply_.allow != nullptr) response->set(http::field::allow, reply_.allow);
+    if (!reply_.download.empty())
+      response->set(http::field::content_disposition, "attachment; filename=\"" + reply_.download + "\"");
+    if (!reply_.allow.empty()) response->set(http::field::allow, reply_.allow);
     response->keep_alive(keep_alive_);
     response->content_length(reply_.body->size());
     if constexpr (!std::is_same_v<Body, http::empty_body>)

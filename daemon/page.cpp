@@ -85,6 +85,12 @@ refresh();
 
 }  // namespace
 
-std::shared_ptr<const std::string> status_page() { return std::make_shared<const std::string>(kPage); }
+void add_page_routes(Routes& routes) {
+  const auto text = std::make_shared<const std::string>(kPage);
+  const char* type = "text/html; charset=utf-8";
+  routes.add({.path = "/", .summary = "The live page.", .content_type = type, .answer = [text, type](const Call&) {
+                return Reply{.content_type = type, .body = text};
+              }});
+}
 
 }  // namespace kinemap

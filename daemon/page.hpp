@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-#include <string>
+#include "daemon/routes.hpp"
 
 namespace kinemap {
 
-/// The page at `/`: what the daemon receives, and the floor plan; one self-contained HTML text.
-std::shared_ptr<const std::string> status_page();
+/// The page at `/`: what the daemon receives, and the floor plan. All its files are in memory, since a wearable has no
+/// internet.
+void add_page_routes(Routes& routes);
 
 }  // namespace kinemap

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <set>
 
 namespace kinemap {
@@ -25,30 +24,54 @@ std::optional<double> parse_finite(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// What the client sent, short enough and plain enough to be sent back.
-std::string quoted(const std::string& text) {
-  std::string shown(1, '"');
-  shown.append(text, 0, 40);
-  shown += text.size() > 40 ? "…\"" : "\"";
-  return shown;
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const auto end = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// What the client sent, short enough to be sent back.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kShown = 40;
+  return text.size() > kShown ? text.substr(0, kShown) + "…" : text;
 }
 
 }  // namespace
 
-ParamReader::ParamReader(const Params& params, std::initializer_list<const char*> allowed) : params_(params) {
+std::optional<ApiError> check_params(const Params& params, const std::vector<ParamSpec>& specs) {
+  std::string names;
+  for (const ParamSpec& spec : specs) names += (names.empty() ? "" : ", ") + std::string(spec.name);
   std::set<std::string> seen;
   for (const auto& [name, value] : params) {
-    if (std::none_of(allowed.begin(), allowed.end(), [&](const char* item) { return name == item; })) {
-      std::string list;
-      for (const char* item : allowed) list += (list.empty() ? "" : ", ") + std::string(item);
-      fail("unknown parameter " + quoted(name) + "; " + (list.empty() ? "there are none here" : "there are: " + list));
-    }
-    if (!seen.insert(name).second) fail("parameter " + name + " stands twice");
+    const std::string shown = shortened(name);
+    if (std::none_of(specs.begin(), specs.end(), [&](const ParamSpec& spec) { return name == spec.name; }))
+      return ApiError{
+          .code = "bad_parameter",
+          .message = "unknown parameter \"" + shown + "\"; there are" + (names.empty() ? " none here" : ": " + names),
+          .parameter = shown,
+          .given = shortened(value),
+          .allowed = names};
+    if (!seen.insert(name).second)
+      return ApiError{.code = "bad_parameter",
+                      .message = "parameter " + name + " stands twice",
+                      .parameter = name,
+                      .given = shortened(value),
+                      .allowed = "once"};
   }
+  return std::nullopt;
 }
 
-void ParamReader::fail(const std::string& message) {
-  if (!error_) error_ = ApiError{400, "bad_parameter", message};
+void ParamReader::fail(const std::string& name, const std::string& given, const std::string& allowed) {
+  if (error_) return;
+  error_ = ApiError{.code = "bad_parameter",
+                    .message = name + " must be " + allowed + ", not \"" + shortened(given) + "\"",
+                    .parameter = name,
+                    .given = shortened(given),
+                    .allowed = allowed};
 }
 
 std::optional<std::string> ParamReader::text(const char* name) {
@@ -63,9 +86,9 @@ std::optional<double> ParamReader::number(const char* name, double min, double m
   if (!raw) return std::nullopt;
   const auto value = parse_finite(*raw);
   if (value && *value >= min && *value <= max) return value;
-  char range[96];
-  std::snprintf(range, sizeof range, " must be a number from %g to %g, not ", min, max);
-  fail(name + std::string(range) + quoted(*raw));
+  char range[64];
+  std::snprintf(range, sizeof range, "a number from %g to %g", min, max);
+  fail(name, *raw, range);
   return std::nullopt;
 }
 
@@ -74,35 +97,30 @@ std::optional<std::size_t> ParamReader::count(const char* name, std::size_t min,
   if (!raw) return std::nullopt;
   const auto value = parse<std::size_t>(*raw);
   if (value && *value >= min && *value <= max) return value;
-  fail(std::string(name) + " must be a whole number from " + std::to_string(min) + " to " + std::to_string(max) +
-       ", not " + quoted(*raw));
+  fail(name, *raw, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   return std::nullopt;
 }
 
-std::optional<Eigen::Vector2d> ParamReader::point(const char* name) {
+std::optional<ParamReader::Point> ParamReader::point(const char* name) {
   const auto raw = text(name);
   if (!raw) return std::nullopt;
-  const auto comma = raw->find(',');
-  if (comma != std::string::npos) {
-    const auto x = parse_finite(std::string_view(*raw).substr(0, comma));
-    const auto y = parse_finite(std::string_view(*raw).substr(comma + 1));
-    if (x && y) return Eigen::Vector2d(*x, *y);
+  const auto parts = parts_of(*raw);
+  Point point;
+  point.has_z = parts.size() == 3;
+  bool good = parts.size() == 2 || parts.size() == 3;
+  for (std::size_t i = 0; good && i < parts.size(); ++i) {
+    const auto value = parse_finite(parts[i]);
+    good = value.has_value();
+    point.p[static_cast<Eigen::Index>(i)] = value.value_or(0.0);
   }
-  fail(std::string(name) + " must be two numbers with a comma, metres in the map frame, such as 1.5,-2; not " +
-       quoted(*raw));
+  if (good) return point;
+  fail(name, *raw, "two or three numbers with commas, metres in the map frame, such as 1.5,-2");
   return std::nullopt;
 }
 
 std::vector<std::string> ParamReader::list(const char* name) {
-  std::vector<std::string> parts;
   const auto raw = text(name);
-  if (!raw) return parts;
-  for (std::size_t begin = 0; begin <= raw->size();) {
-    const auto end = std::min(raw->find(',', begin), raw->size());
-    parts.push_back(raw->substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
+  return raw ? parts_of(*raw) : std::vector<std::string>();
 }
 
 }  // namespace kinemap

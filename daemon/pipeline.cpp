@@ -10,13 +10,7 @@
 namespace kinemap {
 namespace {
 
-LivePose live_pose_of(const SuitFrame& frame) {
-  const Pose& pelvis = frame[Segment::Pelvis];
-  return {true,
-          frame.time_s,
-          {pelvis.p.x(), pelvis.p.y(), pelvis.p.z()},
-          {pelvis.q.w(), pelvis.q.x(), pelvis.q.y(), pelvis.q.z()}};
-}
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
@@ -78,7 +72,7 @@ void Pipeline::detect(const std::stop_token& stop) {
 }
 
 void Pipeline::take_frame(const SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop) {
-  live_pose_.set(live_pose_of(frame));
+  live_body_.set(live_body_of(frame, now_s()));
   events.clear();
   tracker_.step(frame, events);
   tracker_stats_.set(tracker_.stats());

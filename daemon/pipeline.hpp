@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -16,17 +15,10 @@
 #include "core/mapper/mapper.hpp"
 #include "core/tracker/tracker.hpp"
 #include "daemon/latest.hpp"
+#include "daemon/live_body.hpp"
 #include "daemon/ring.hpp"
 
 namespace kinemap {
-
-/// Where the wearer is now, in the suit's drifting frame: T_odom_pelvis. The map's T_map_odom corrects it.
-struct LivePose {
-  bool known = false;  ///< false until the first frame
-  double time_s = 0.0;
-  std::array<double, 3> position_m{};             ///< odom frame
-  std::array<double, 4> orientation{1, 0, 0, 0};  ///< w x y z
-};
 
 /// Something the wearer did, for those who listen to the stream of events.
 struct Notice {
@@ -85,7 +77,7 @@ class Pipeline {
 
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
-  [[nodiscard]] LivePose live_pose() const { return live_pose_.get(); }
+  [[nodiscard]] LiveBody live_body() const { return live_body_.get(); }
   [[nodiscard]] PipelineStats stats() const;
 
   /// One listener's thread only.
@@ -114,7 +106,7 @@ class Pipeline {
       events_;                       // detection → solver; by pointer: a trace is not copied on the fast thread
   Ring<Notice> notices_;             // solver → the one listener
   Latest<MapSnapshot> map_;          // solver → everyone who asks
-  LatestValue<LivePose> live_pose_;  // detection → everyone who asks
+  LatestValue<LiveBody> live_body_;  // detection → everyone who asks
   LatestValue<TrackerStats> tracker_stats_;         // detection → everyone who asks
   LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks

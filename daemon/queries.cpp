@@ -49,12 +49,12 @@ Filter read_filter(ParamReader& reader) {
     if (type)
       filter.types.push_back(*type);
     else
-      reader.fail("type \"" + name.substr(0, 40) + "\" is unknown; there are: wall, table, screen, chair");
+      reader.fail("type", name, "one or several of wall, table, screen, chair");
   }
   filter.function = reader.text("function");
-  filter.near = reader.point("near");
+  if (const auto near = reader.point("near")) filter.near = near->p.head<2>();
   if (const auto within = reader.number("within", 0.0, kFarthest)) {
-    if (!filter.near) reader.fail("within needs near=x,y");
+    if (!filter.near) reader.fail("within", *reader.text("within"), "used with near=x,y");
     filter.within_m = *within;
   }
   filter.limit = reader.count("limit", 1, kMostObjects).value_or(kMostObjects);
@@ -67,10 +67,6 @@ struct Found {
 };
 
 }  // namespace
-
-std::string error_text(const ApiError& error) {
-  return text_of({{"error", {{"code", error.code}, {"message", error.message}}}});
-}
 
 double level_distance(const MapObject& object, const Eigen::Vector2d& point) {
   if (!object.corners) return (object.pose.p.head<2>() - point).norm();
@@ -86,8 +82,16 @@ double level_distance(const MapObject& object, const Eigen::Vector2d& point) {
   return left == 4 || right == 4 ? 0.0 : nearest;
 }
 
+std::vector<ParamSpec> object_params() {
+  return {{"type", R"({"type":"string"})", "One or several types with commas: wall, table, screen, chair."},
+          {"function", R"({"type":"string"})", "What it is for: sit, place, view, bound."},
+          {"near", R"({"type":"string"})", "x,y in the map frame, m: the nearest come first."},
+          {"within", R"({"type":"number","minimum":0})", "Not farther than this, m; needs near."},
+          {"limit", R"({"type":"integer","minimum":1})", "At most so many."}};
+}
+
 Answer query_objects(const MapSnapshot& map, const Params& params) {
-  ParamReader reader(params, {"type", "function", "near", "within", "limit"});
+  ParamReader reader(params);
   const Filter filter = read_filter(reader);
   if (reader.error()) return *reader.error();
 
@@ -111,17 +115,22 @@ Answer query_object(const MapSnapshot& map, std::string_view id) {
   std::uint32_t number = 0;
   const auto [stop, error] = std::from_chars(id.data(), id.data() + id.size(), number);
   if (error != std::errc{} || stop != id.data() + id.size())
-    return ApiError{400, "bad_parameter", "an object's id is a whole number"};
+    return ApiError{.code = "bad_parameter", .message = "an object's id is a whole number"};
   for (const MapObject& object : map.objects)
     if (object.id == number) return text_of(to_json(object));
   const std::string ids = map.objects.empty() ? "the map has no objects yet"
                                               : "ids run " + std::to_string(map.objects.front().id) + "–" +
                                                     std::to_string(map.objects.back().id);
-  return ApiError{404, "not_found", "no object " + std::to_string(number) + "; " + ids};
+  return ApiError{.status = 404, .code = "not_found", .message = "no object " + std::to_string(number) + "; " + ids};
+}
+
+std::vector<ParamSpec> trajectory_params() {
+  return {{"since", R"({"type":"number","minimum":0})", "Not before this stream time, s."},
+          {"until", R"({"type":"number","minimum":0})", "Not after this stream time, s."}};
 }
 
 Answer query_trajectory(const MapSnapshot& map, const Params& params) {
-  ParamReader reader(params, {"since", "until"});
+  ParamReader reader(params);
   const double since = reader.number("since", 0.0, 1e9).value_or(0.0);
   const double until = reader.number("until", 0.0, 1e9).value_or(1e9);
   if (reader.error()) return *reader.error();
@@ -135,12 +144,11 @@ Answer query_trajectory(const MapSnapshot& map, const Params& params) {
   return text_of({{"revision", map.revision}, {"frame", "map"}, {"poses", std::move(poses)}});
 }
 
-Answer query_pose(const MapSnapshot& map, const LivePose& pose) {
-  if (!pose.known)
+Answer query_pose(const MapSnapshot& map, const LiveBody& body) {
+  if (!body.known)
     return ApiError{503, "no_suit", "no frame of a suit has come yet; /api/v1/status says what was received"};
-  const Pose T_odom_pelvis{{pose.position_m[0], pose.position_m[1], pose.position_m[2]},
-                           {pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]}};
-  Json json = {{"time", rounded(pose.time_s)}, {"revision", map.revision}, {"frame", "map"}};
+  const Pose T_odom_pelvis = body.T_odom(Segment::Pelvis);
+  Json json = {{"time", rounded(body.time_s)}, {"revision", map.revision}, {"frame", "map"}};
   json.update(to_json(map.T_map_odom * T_odom_pelvis));
   json["odometry"] = to_json(T_odom_pelvis);
   return text_of(json);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/queries.hpp"
 #include "daemon/stream_protocol.hpp"
 
 namespace kinemap {
@@ -55,13 +56,13 @@ void StreamHub::update_pose(TimePoint now) {
     return;
   }
   if (now < pose_due_) return;
-  const LivePose pose = api_.sources().pose();
+  const LiveBody body = api_.sources().body();
   const auto map = api_.sources().map();
   // A new map corrects the pose even of a wearer whose suit is silent.
-  if (!pose.known || (pose.time_s == pose_time_s_ && map->revision == pose_revision_)) return;
-  const Answer answer = query_pose(*map, pose);
+  if (!body.known || (body.time_s == pose_time_s_ && map->revision == pose_revision_)) return;
+  const Answer answer = query_pose(*map, body);
   newest(Topic::Pose) = shared(news_text(Topic::Pose, std::get<std::string>(answer)));
-  pose_time_s_ = pose.time_s;
+  pose_time_s_ = body.time_s;
   pose_revision_ = map->revision;
   const auto step = std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(1.0 / pose_rate_hz_));
   // On the grid of the rate, so that late ticks do not lower it; from now on after a pause.

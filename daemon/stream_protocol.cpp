@@ -105,9 +105,8 @@ std::string result_text(const std::string& id, const std::string& data) {
   return R"({"op":"result","id":)" + id + R"(,"data":)" + data + "}";
 }
 
-std::string stream_error_text(const std::string& id, const ApiError& error) {
-  // error_text is {"error":{…}}: its members go into this message.
-  const std::string members = error_text(error).substr(1);
+std::string stream_error_text(const std::string& id, const std::string& error) {
+  const std::string members = error.substr(1);  // of {"error":{…}}
   return R"({"op":"error",)" + (id.empty() ? std::string() : "\"id\":" + id + ",") + members;
 }
 

@@ -6,8 +6,10 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/answer.hpp"
 #include "daemon/outbox.hpp"
-#include "daemon/queries.hpp"
+#include "daemon/pipeline.hpp"
+#include "daemon/url.hpp"
 
 /// The JSON messages of /api/v1/stream, both ways; daemon/README.md is the specification.
 namespace kinemap {
@@ -32,9 +34,10 @@ using ClientMessage = std::variant<Subscribe, Unsubscribe, StreamQuery, BadMessa
 /// Never throws: whatever is wrong becomes a BadMessage that says what is allowed.
 ClientMessage parse_client_message(std::string_view text);
 
-std::string subscribed_text(const std::vector<Topic>& topics);                ///< {"op":"subscribed","topics":[…]}
-std::string result_text(const std::string& id, const std::string& data);      ///< {"op":"result","id":…,"data":…}
-std::string stream_error_text(const std::string& id, const ApiError& error);  ///< {"op":"error","id":…,"error":{…}}
+std::string subscribed_text(const std::vector<Topic>& topics);            ///< {"op":"subscribed","topics":[…]}
+std::string result_text(const std::string& id, const std::string& data);  ///< {"op":"result","id":…,"data":…}
+/// {"op":"error","id":…,"error":{…}}; `error` is what error_text made.
+std::string stream_error_text(const std::string& id, const std::string& error);
 std::string news_text(Topic topic, const std::string& data);  ///< {"op":"message","topic":…,"data":…}
 std::string notice_text(const Notice& notice);                ///< data of the topic "events"
 

@@ -60,13 +60,14 @@ class StreamSession : public WebSocketSession, public Subscriber {
   }
   void handle(const StreamQuery& query) {
     ++context().api.counts().requests;
-    const Answer result = context().api.query(query.path, query.params);
-    if (const auto* error = std::get_if<ApiError>(&result)) return handle(BadMessage{query.id, *error});
-    answer(result_text(query.id, std::get<std::string>(result)));
+    const Reply reply = context().api.query(query.path, query.params);
+    if (reply.status < 400) return answer(result_text(query.id, *reply.body));
+    ++context().api.counts().errors;
+    answer(stream_error_text(query.id, *reply.body));
   }
   void handle(const BadMessage& message) {
     ++context().api.counts().errors;
-    answer(stream_error_text(message.id, message.error));
+    answer(stream_error_text(message.id, error_text(message.error)));
   }
 
   [[nodiscard]] std::vector<Topic> topics() const {

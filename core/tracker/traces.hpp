@@ -30,6 +30,8 @@ class TraceFold {
   std::optional<Event> close();
 
   [[nodiscard]] bool open() const { return open_; }
+  /// Open, and by now it is sure that the gesture is meant.
+  [[nodiscard]] bool held() const { return open_ && held_; }
   /// Open, and nothing has been recorded yet: the first contact wants a key pose of its own.
   [[nodiscard]] bool starting() const { return open_ && trace_.contacts.empty(); }
   [[nodiscard]] std::uint64_t rejected() const { return rejected_; }

@@ -70,6 +70,7 @@ class Tracker::Impl {
   }
 
   void count() {
+    stats_.tracing = traces_.held();
     stats_.traces_rejected = traces_.rejected();
     stats_.contacts_thinned_out = traces_.thinned_out();
     stats_.path_m = key_poses_.total_path_m();

@@ -21,6 +21,7 @@ struct TrackerStats {
   std::uint64_t sittings = 0;
   std::uint64_t contacts_thinned_out = 0;  ///< contacts left out because a trace reached its limit
   double path_m = 0.0;                     ///< length of the level pelvis path
+  bool tracing = false;                    ///< the modelling gesture is held now
 };
 
 /// A fold over frames: what the wearer does, as events. Deterministic; one call costs microseconds; memory is bounded

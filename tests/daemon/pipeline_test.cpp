@@ -109,20 +109,20 @@ TEST(Pipeline, StartsAndStopsFiftyTimesWithWorkInHand) {
     for (const auto& frame : frames) pipeline.offer(frame);
     pipeline.offer(WearerInfo{"somebody", {}, {}, {}});
     if (i % 3 == 0) {
-      EXPECT_TRUE(eventually([&] { return pipeline.live_pose().known; }));
+      EXPECT_TRUE(eventually([&] { return pipeline.live_body().known; }));
     }
     EXPECT_NE(pipeline.map(), nullptr);
   }
 }
 
-TEST(Pipeline, FramesBecomeEventsAndALivePose) {
+TEST(Pipeline, FramesBecomeEventsAndALiveBody) {
   const auto frames = glider_frames(480);
   Pipeline pipeline{TrackerConfig{}, MapperConfig{}};
-  EXPECT_FALSE(pipeline.live_pose().known);
+  EXPECT_FALSE(pipeline.live_body().known);
   for (const auto& frame : frames) EXPECT_TRUE(pipeline.offer(frame));
   ASSERT_TRUE(eventually([&] { return pipeline.stats().tracker.frames == frames.size(); }));
-  EXPECT_NEAR(pipeline.live_pose().position_m[0], 479.0 / 120.0, 1e-3);
-  EXPECT_NEAR(pipeline.live_pose().time_s, 479.0 / 120.0, 2e-3);
+  EXPECT_NEAR(pipeline.live_body().T_odom(Segment::Pelvis).p.x(), 479.0 / 120.0, 1e-3);
+  EXPECT_NEAR(pipeline.live_body().time_s, 479.0 / 120.0, 2e-3);
   // The same frames through a tracker in this thread give the same key poses, and each reaches the solver.
   Tracker tracker{TrackerConfig{}};
   std::vector<Event> events;

@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/params.hpp"
 #include "daemon/url.hpp"
+#include "tests/daemon/support.hpp"
 
 namespace kinemap {
 namespace {
@@ -113,20 +115,28 @@ TEST(QueryObjects, RefusesWhatItDoesNotUnderstand) {
     const auto error = error_of(query_objects(sample_map(), params));
     return std::to_string(error.status) + " " + error.code + " " + error.message;
   };
-  EXPECT_THAT(message({{"typ", "wall"}}),
-              HasSubstr("400 bad_parameter unknown parameter \"typ\"; there are: type, function"));
-  EXPECT_THAT(message({{"type", "wal"}}), HasSubstr("there are: wall, table, screen, chair"));
-  EXPECT_THAT(message({{"type", "wall,"}}), HasSubstr("type \"\" is unknown"));
-  EXPECT_THAT(message({{"type", "wall"}, {"type", "chair"}}), HasSubstr("stands twice"));
-  EXPECT_THAT(message({{"near", "1"}}), HasSubstr("near must be two numbers"));
-  EXPECT_THAT(message({{"near", "1,2,3"}}), HasSubstr("near must be two numbers"));
-  EXPECT_THAT(message({{"near", "nan,0"}}), HasSubstr("near must be two numbers"));
-  EXPECT_THAT(message({{"within", "2"}}), HasSubstr("within needs near"));
+  EXPECT_THAT(message({{"type", "wal"}}),
+              HasSubstr("400 bad_parameter type must be one or several of wall, table, screen, chair, not \"wal\""));
+  EXPECT_THAT(message({{"type", "wall,"}}), HasSubstr("not \"\""));
+  for (const char* near : {"1", "1,2,3,4", "nan,0", "1,,2", ""})
+    EXPECT_THAT(message({{"near", near}}), HasSubstr("near must be two or three numbers"));
+  EXPECT_THAT(message({{"within", "2"}}), HasSubstr("within must be used with near"));
   EXPECT_THAT(message({{"near", "0,0"}, {"within", "-1"}}), HasSubstr("within must be a number"));
   EXPECT_THAT(message({{"near", "0,0"}, {"within", "inf"}}), HasSubstr("within must be a number"));
   EXPECT_THAT(message({{"limit", "0"}}), HasSubstr("limit must be a whole number from 1"));
   EXPECT_THAT(message({{"limit", "2.5"}}), HasSubstr("limit must be a whole number"));
   EXPECT_THAT(message({{"limit", std::string(500, '9')}}), HasSubstr("…\""));
+}
+
+TEST(CheckParams, EachMustBeKnownAndStandOnce) {
+  EXPECT_FALSE(check_params({{"type", "wall"}, {"limit", "1"}}, object_params()));
+  const auto unknown = check_params({{"typ", "wall"}}, object_params());
+  ASSERT_TRUE(unknown);
+  EXPECT_THAT(unknown->message, HasSubstr("unknown parameter \"typ\"; there are: type, function"));
+  EXPECT_EQ(unknown->parameter, "typ");
+  EXPECT_EQ(unknown->given, "wall");
+  EXPECT_THAT(check_params({{"x", "1"}}, {})->message, HasSubstr("there are none here"));
+  EXPECT_THAT(check_params({{"type", "wall"}, {"type", "chair"}}, object_params())->message, HasSubstr("stands twice"));
 }
 
 TEST(QueryObject, ByIdOr404WithTheIdsThereAre) {
@@ -155,10 +165,8 @@ TEST(QueryTrajectory, SinceAndUntilAreInclusive) {
 }
 
 TEST(QueryPose, IsTheOdometryCorrectedByTheMap) {
-  LivePose pose;
-  EXPECT_EQ(error_of(query_pose(sample_map(), pose)).status, 503U);
-  pose = {true, 3.5, {0.5, 0.25, 1.0}, {1, 0, 0, 0}};
-  const auto json = value_of(query_pose(sample_map(), pose));
+  EXPECT_EQ(error_of(query_pose(sample_map(), {})).status, 503U);
+  const auto json = value_of(query_pose(sample_map(), test::body_at(3.5, {0.5, 0.25, 1.0})));
   EXPECT_EQ(json["position"], (Json{1.5, 2.25, 1.0}));
   EXPECT_EQ(json["odometry"]["position"], (Json{0.5, 0.25, 1.0}));
   EXPECT_EQ(json["time"], 3.5);
@@ -187,6 +195,36 @@ TEST(Url, BrokenEscapesAndControlCharactersAreRefused) {
   for (const char* bad :
        {"", "objects", "http://x/", "/%", "/%2", "/%zz", "/%+1", "/a%00b", "/a%0d%0ab", "/?a=%1", "/?%g0=1", "/?a=%-1"})
     EXPECT_FALSE(parse_target(bad)) << bad;
+}
+
+Routes some_routes() {
+  Routes routes;
+  for (const char* path : {"/", "/healthz", "/api/v1/map", "/api/v1/objects", "/api/v1/objects/{id}", "/file/{id}.txt"})
+    routes.add({.path = path, .answer = [path](const Call& call) {
+                  return reply_of(std::string(path) + " " + std::string(call.id));
+                }});
+  return routes;
+}
+
+TEST(Routes, APathFindsItsRoute) {
+  const Routes routes = some_routes();
+  const auto body = [&](std::string_view path) { return *routes.answer(path, {}).body; };
+  EXPECT_EQ(body("/"), "/ ");
+  EXPECT_EQ(body("/api/v1/objects"), "/api/v1/objects ");
+  EXPECT_EQ(body("/api/v1/objects/17"), "/api/v1/objects/{id} 17");
+  EXPECT_EQ(body("/file/a.txt"), "/file/{id}.txt a");
+  for (const char* path : {"", "/api/v1/objects/", "/api/v1/objects/1/2", "/file/.txt", "/file/a", "/api/v1/map/"})
+    EXPECT_EQ(routes.answer(path, {}).status, 404U) << path;
+  EXPECT_EQ(routes.answer("/api/v1/map", {{"x", "1"}}).status, 400U);
+}
+
+TEST(Routes, AnUnknownPathIsToldTheNearest) {
+  const Routes routes = some_routes();
+  EXPECT_EQ(routes.unknown("/api/v1/mpa").nearest, "/api/v1/map");
+  EXPECT_EQ(routes.unknown("/api/v2/objects").nearest, "/api/v1/objects");
+  EXPECT_EQ(routes.unknown("/health").nearest, "/healthz");
+  EXPECT_EQ(routes.unknown(std::string(100000, 'x')).message.size(),
+            routes.unknown(std::string(80, 'x')).message.size());
 }
 
 TEST(ErrorText, IsJsonWhateverTheMessageHolds) {

@@ -26,7 +26,7 @@ class ServerTest : public testing::Test {
  protected:
   void start(Config::Api config = {}, ServerLimits limits = {}) {
     config.port = 0;
-    Sources sources{[this] { return map_.get(); }, [this] { return pose_.get(); },
+    Sources sources{[this] { return map_.get(); }, [this] { return body_.get(); },
                     [this] {
                       return ReceiverState{{}, refuse_ ? refused_ : news_, 10.0};
                     },
@@ -63,7 +63,7 @@ class ServerTest : public testing::Test {
   Json status() { return HttpClient(port_).get("/api/v1/status").json(); }
 
   Latest<MapSnapshot> map_{std::make_shared<const MapSnapshot>()};
-  LatestValue<LivePose> pose_;
+  LatestValue<LiveBody> body_;
   std::atomic<bool> refuse_{false};
   std::mutex mutex_;
   std::vector<Notice> notices_;
@@ -77,7 +77,7 @@ class ServerTest : public testing::Test {
 TEST_F(ServerTest, EveryRouteAnswers) {
   start();
   set_map(3, 2);
-  pose_.set({true, 1.5, {1, 2, 3}, {1, 0, 0, 0}});
+  body_.set(test::body_at(1.5, {1, 2, 3}));
   HttpClient client(port_);  // one connection for all
   EXPECT_EQ(client.get("/api/v1/map").json()["revision"], 3);
   EXPECT_EQ(client.get("/api/v1/map").json()["format"], "kinemap/map");
@@ -95,6 +95,10 @@ TEST_F(ServerTest, EveryRouteAnswers) {
   EXPECT_THAT(page.header("Content-Type"), HasSubstr("text/html"));
   EXPECT_THAT(page.body, HasSubstr("api/v1/map"));
   EXPECT_EQ(client.get("/api/v1/map").header("Content-Type"), "application/json");
+  const auto file = client.get("/api/v1/export/scene.glb");
+  EXPECT_EQ(file.body.substr(0, 4), "glTF");
+  EXPECT_EQ(file.header("Content-Type"), "model/gltf-binary");
+  EXPECT_EQ(file.header("Content-Disposition"), "attachment; filename=\"scene.glb\"");
 }
 
 TEST_F(ServerTest, HealthSaysWaitingRefusedOrOk) {
@@ -129,6 +133,7 @@ TEST_F(ServerTest, ErrorsAreJsonWithTheRightStatus) {
     return reply;
   };
   expect("GET", "/nothing", 404, "not_found");
+  EXPECT_EQ(expect("GET", "/api/v1/objcts", 404, "not_found").json()["error"]["nearest"], "/api/v1/objects");
   expect("GET", "/api/v1/nothing", 404, "not_found");
   expect("GET", "/api/v1/objects/99", 404, "not_found");
   expect("GET", "/api/v1/objects/x", 400, "bad_parameter");
@@ -216,9 +221,9 @@ TEST_F(ServerTest, AStreamPushesMapsPosesStatusAndEvents) {
   EXPECT_TRUE(client.receive({{"topic", "status"}})["data"].contains("rings"));
   set_map(2, 3);
   EXPECT_EQ(client.receive({{"topic", "map"}})["data"]["objects"].size(), 3U);
-  pose_.set({true, 1.0, {4, 5, 6}, {1, 0, 0, 0}});
+  body_.set(test::body_at(1.0, {4, 5, 6}));
   EXPECT_EQ(client.receive({{"topic", "pose"}})["data"]["position"], (Json{4, 5, 6}));
-  pose_.set({true, 1.1, {5, 5, 6}, {1, 0, 0, 0}});
+  body_.set(test::body_at(1.1, {5, 5, 6}));
   EXPECT_EQ(client.receive({{"topic", "pose"}})["data"]["time"], 1.1);
   {
     const std::lock_guard lock(mutex_);
@@ -230,7 +235,7 @@ TEST_F(ServerTest, AStreamPushesMapsPosesStatusAndEvents) {
 TEST_F(ServerTest, ALateSubscriberGetsTheStateAtOnce) {
   start();
   set_map(7, 1);
-  pose_.set({true, 1.0, {4, 5, 6}, {1, 0, 0, 0}});
+  body_.set(test::body_at(1.0, {4, 5, 6}));
   StreamClient early(port_), late(port_);
   early.send(R"({"op":"subscribe","topics":["map","pose"]})");
   early.receive({{"topic", "pose"}});
@@ -274,6 +279,8 @@ TEST_F(ServerTest, QueriesOverTheStream) {
     client.send(Json{{"op", "query"}, {"id", 2}, {"path", path}}.dump());
     EXPECT_EQ(client.receive()["op"], "result") << path;
   }
+  client.send(R"({"op":"query","id":3,"path":"export/scene.glb"})");
+  EXPECT_EQ(client.receive()["error"]["code"], "not_json");
   client.send(R"({"op":"query","id":3,"path":"nothing"})");
   EXPECT_EQ(client.receive()["error"]["code"], "not_found");
 }

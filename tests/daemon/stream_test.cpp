@@ -117,9 +117,9 @@ TEST(StreamProtocol, BadMessagesSayWhatIsAllowed) {
 
 TEST(StreamProtocol, AnswersAreJson) {
   EXPECT_EQ(Json::parse(result_text("1", R"({"a":2})")), Json::parse(R"({"op":"result","id":1,"data":{"a":2}})"));
-  EXPECT_EQ(Json::parse(stream_error_text("\"x\"", {404, "not_found", "no"})),
+  EXPECT_EQ(Json::parse(stream_error_text("\"x\"", error_text({404, "not_found", "no"}))),
             Json::parse(R"({"op":"error","id":"x","error":{"code":"not_found","message":"no"}})"));
-  EXPECT_FALSE(Json::parse(stream_error_text("", {400, "bad", "no"})).contains("id"));
+  EXPECT_FALSE(Json::parse(stream_error_text("", error_text({400, "bad", "no"}))).contains("id"));
   EXPECT_EQ(Json::parse(news_text(Topic::Map, "[]")), Json::parse(R"({"op":"message","topic":"map","data":[]})"));
   EXPECT_EQ(Json::parse(subscribed_text({Topic::Events})), Json::parse(R"({"op":"subscribed","topics":["events"]})"));
   const auto trace = Json::parse(notice_text({Notice::Kind::Trace, 1.0, 2.0, 17, 0.0}));

@@ -17,6 +17,13 @@ constexpr std::array<std::array<float, 3>, 23> kTPose{{
 
 }  // namespace
 
+LiveBody body_at(double time_s, const Eigen::Vector3d& p) {
+  SuitFrame frame;
+  frame.time_s = time_s;
+  for (Pose& segment : frame.segments) segment.p = p;
+  return live_body_of(frame, 0.0);
+}
+
 mxtp::Bytes glider_datagram(std::uint32_t index, std::uint8_t character) {
   std::vector<mxtp::SegmentItem> items;
   for (std::size_t i = 0; i < kTPose.size(); ++i) {

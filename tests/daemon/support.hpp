@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "daemon/live_body.hpp"
 #include "protocol/wire/mxtp.hpp"
 
 namespace kinemap::test {
@@ -21,6 +22,9 @@ inline bool eventually(const std::function<bool()>& condition, std::chrono::seco
   }
   return true;
 }
+
+/// A body that stands upright with its pelvis at `p` of the odom frame, and all of it there.
+LiveBody body_at(double time_s, const Eigen::Vector3d& p);
 
 /// Sample `index` of a wearer in T-pose who glides forward (+x) at 1 m/s, 120 samples per second: one datagram.
 mxtp::Bytes glider_datagram(std::uint32_t index, std::uint8_t character = 0);

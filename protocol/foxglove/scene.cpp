@@ -24,6 +24,12 @@ void append(std::string& list, const std::string& item) { list += (list.empty() 
 
 }  // namespace
 
+Message scene(double time_s, std::span<const Entity> entities) {
+  std::string list;
+  for (const Entity& entity : entities) append(list, entity.json);
+  return message(time_s, Json::array(), list);
+}
+
 std::optional<Message> Scene::update(const MapSnapshot& map) {
   time_s_ = map.time_s;
   std::map<std::string, std::string> now;

@@ -14,6 +14,9 @@
 
 namespace kinemap::foxglove {
 
+/// These entities as they are, deleting none, at that stream time (s).
+Message scene(double time_s, std::span<const Entity> entities);
+
 /// The scene from one map to the next, as foxglove.SceneUpdate.
 class Scene {
  public:

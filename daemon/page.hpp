@@ -5,8 +5,7 @@
 
 namespace kinemap {
 
-/// The page at `/`: what the daemon receives, and the floor plan. All its files are in memory, since a wearable has no
-/// internet.
+/// The live page at `/` (daemon/web). All its files lie in the program, since a wearable has no internet.
 void add_page_routes(Routes& routes);
 
 }  // namespace kinemap

@@ -1,7 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs with apt-get the Debian 12 packages that Kinemap is built from and tested with, those that are missing, and nothing else.
+# Installs what Kinemap is built from, what is missing of it and nothing else: Debian 12 packages with apt-get, and the npm packages of the live
+# page into daemon/web/node_modules. With --tests also what only the tests need: Chromium and their npm packages.
 set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tests=no
+case ${1-} in
+  --tests) tests=yes ;;
+  "") ;;
+  *) echo "usage: tools/setup.sh [--tests]" >&2; exit 2 ;;
+esac
 
 packages=(
   g++ cmake ninja-build ccache git ca-certificates pkg-config # build
@@ -11,37 +20,67 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev                  # tests
   python3-jsonschema                                          # the map's schema is tested with it
 )
+# Any Node.js from 18 on will do, wherever it came from.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
+if [[ $tests == yes ]]; then
+  packages+=(chromium) # the live page is tested in it
+fi
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "setup.sh: this is no Debian; install what stands for these packages: ${packages[*]}" >&2
   exit 1
 fi
 
-missing=()
-for package in "${packages[@]}"; do
-  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-  [[ $status == installed ]] || missing+=("$package")
-done
-if ((${#missing[@]} == 0)); then
-  echo "setup: all ${#packages[@]} packages are there"
-  exit 0
-fi
+install_packages() {
+  local missing=() package status
+  for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ $status == installed ]] || missing+=("$package")
+  done
+  if ((${#missing[@]} == 0)); then
+    echo "setup: all ${#packages[@]} packages are there"
+    return
+  fi
+  local as_root=()
+  if ((EUID != 0)); then
+    if ! command -v sudo >/dev/null; then
+      echo "setup.sh: these packages are missing and there is no sudo; as root: apt-get install ${missing[*]}" >&2
+      exit 1
+    fi
+    as_root=(sudo)
+  fi
+  echo "setup: installing ${missing[*]}"
+  local install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends -qq "${missing[@]}")
+  # Package lists may be missing (a bare system) or old: then fetch them, once.
+  if ! "${install[@]}" >/dev/null 2>&1; then
+    "${as_root[@]}" apt-get update -qq
+    "${install[@]}" >/dev/null
+  fi
+}
 
-as_root=()
-if ((EUID != 0)); then
-  if ! command -v sudo >/dev/null; then
-    echo "setup.sh: these packages are missing and there is no sudo; as root: apt-get install ${missing[*]}" >&2
+# npm_packages FOLDER all|build: exactly what FOLDER/package-lock.json says, unless it is there already; `build` leaves out what only tests need.
+npm_packages() {
+  local folder=$1 what=$2 mark=$1/node_modules/.installed lock
+  lock=$(sha256sum <"$folder/package-lock.json")
+  if [[ -f $mark ]] && { [[ $(<"$mark") == "all $lock" ]] || [[ $(<"$mark") == "$what $lock" ]]; }; then
+    return
+  fi
+  echo "setup: npm packages of $folder"
+  local options=(--no-audit --no-fund --ignore-scripts --loglevel=error)
+  [[ $what == all ]] || options+=(--omit=dev)
+  if ! (cd "$folder" && npm ci "${options[@]}" >/dev/null); then
+    echo "setup.sh: npm could not install what $folder/package-lock.json names; is the npm registry within reach?" >&2
     exit 1
   fi
-  as_root=(sudo)
-fi
+  echo "$what $lock" >"$mark"
+}
 
-echo "setup: installing ${missing[*]}"
-export DEBIAN_FRONTEND=noninteractive
-install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends -qq "${missing[@]}")
-# Package lists may be missing (a bare system) or old: then fetch them, once.
-if ! "${install[@]}" >/dev/null 2>&1; then
-  "${as_root[@]}" apt-get update -qq
-  "${install[@]}" >/dev/null
+install_packages
+if [[ $tests == yes ]]; then
+  npm_packages daemon/web all
+  npm_packages tests/web all
+else
+  npm_packages daemon/web build
 fi
 echo "setup: done"

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3-D view. It draws a frame only when something has changed: a wearable's viewer is often a phone.
+import {
+  DirectionalLight,
+  Fog,
+  GridHelper,
+  Group,
+  HemisphereLight,
+  type LineBasicMaterial,
+  type Object3D,
+  PerspectiveCamera,
+  Raycaster,
+  Scene as ThreeScene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { CSS2DObject, CSS2DRenderer } from "three/addons/renderers/CSS2DRenderer.js";
+import { boundsOf } from "../bounds";
+import { objectName } from "../format";
+import type { Wearer } from "../live";
+import type { MapDocument, MapObject, TrackPose } from "../model";
+import { onThemeChange, reducedMotion } from "../theme";
+import { Figure } from "./figure";
+import { disposeGroup, objectGroup } from "./objects";
+import { Palette } from "./palette";
+import { floorAt, floorOf, roomsGroup } from "./rooms";
+import { Tracks } from "./tracks";
+
+export interface SceneInput {
+  map: MapDocument;
+  track: TrackPose[];
+  selected?: number;
+  follow: boolean;
+}
+
+const kFrom = new Vector3(-0.45, -0.8, 0.85).normalize(); // from the south-west and above
+const kEase = 0.12; // part of the way that the camera goes in a frame
+
+export class SceneView {
+  private renderer: WebGLRenderer;
+  private labels = new CSS2DRenderer();
+  private scene = new ThreeScene();
+  private camera = new PerspectiveCamera(38, 1, 0.1, 400);
+  private controls: OrbitControls;
+  private palette = new Palette();
+  private figure = new Figure(this.palette);
+  private tracks = new Tracks(this.palette);
+  private grid?: GridHelper;
+  private rooms = new Group();
+  private objects = new Map<number, { object: MapObject; selected: boolean; group: Group }>();
+  private labelled = new Group();
+  private input: SceneInput = { map: { revision: 0, time: 0, objects: [], rooms: [] }, track: [], follow: false };
+  private hovered?: number;
+  private goal?: { target: Vector3; distance: number };
+  private auto = true;
+  private requested = false;
+  private stop: (() => void)[] = [];
+
+  /** Throws when there is no WebGL. */
+  constructor(
+    private host: HTMLElement,
+    private wearer: Wearer,
+    private onSelect: (id: number | undefined) => void,
+  ) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.domElement.className = "scene-canvas";
+    this.labels.domElement.className = "scene-labels";
+    host.append(this.renderer.domElement, this.labels.domElement);
+    this.camera.up.set(0, 0, 1);
+    this.camera.position.copy(kFrom).multiplyScalar(9);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.05;
+    this.controls.minDistance = 1;
+    this.controls.maxDistance = 120;
+    this.scene.fog = new Fog(0, 1, 2);
+    const sun = new DirectionalLight(0xffffff, 1.6);
+    sun.position.set(-3, -5, 8);
+    this.scene.add(new HemisphereLight(0xffffff, 0x8a939b, 1.9), sun);
+    this.scene.add(this.rooms, this.tracks.group, this.figure.group, this.labelled);
+    this.recolour();
+    this.listen();
+    this.resize();
+  }
+
+  update(input: SceneInput): void {
+    const before = this.input;
+    this.input = input;
+    if (input.map !== before.map || input.selected !== before.selected) this.showMap(input.map !== before.map);
+    if (input.track !== before.track) this.tracks.show(input.track);
+    if (input.follow && !before.follow) this.auto = false;
+    if (this.auto && (input.map !== before.map || input.track !== before.track)) this.frameAll();
+    this.draw();
+  }
+
+  /** Everything in view, and from now on as the map grows. */
+  fit(): void {
+    this.auto = true;
+    this.frameAll();
+    this.draw();
+  }
+
+  zoom(factor: number): void {
+    this.auto = false;
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    this.goal = { target: this.controls.target.clone(), distance: offset.length() / factor };
+    this.draw();
+  }
+
+  dispose(): void {
+    for (const stop of this.stop) stop();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.host.replaceChildren();
+  }
+
+  private listen(): void {
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(this.host);
+    this.stop.push(
+      () => observer.disconnect(),
+      this.wearer.onSample(() => this.draw()),
+      onThemeChange(() => {
+        this.palette = new Palette();
+        this.recolour();
+        this.showMap(true, true);
+        this.draw();
+      }),
+    );
+    this.controls.addEventListener("change", () => this.draw());
+    this.controls.addEventListener("start", () => {
+      this.auto = false;
+      this.goal = undefined;
+    });
+    const canvas = this.renderer.domElement;
+    let down: { x: number; y: number } | undefined;
+    canvas.addEventListener("pointerdown", (event) => (down = { x: event.clientX, y: event.clientY }));
+    canvas.addEventListener("pointerup", (event) => {
+      // A click, not the end of a turn.
+      if (down && Math.hypot(event.clientX - down.x, event.clientY - down.y) < 6) this.onSelect(this.pick(event));
+      down = undefined;
+    });
+    canvas.addEventListener("pointermove", (event) => event.pointerType === "mouse" && !event.buttons && this.hover(this.pick(event)));
+    canvas.addEventListener("pointerleave", () => this.hover(undefined));
+  }
+
+  private hover(id: number | undefined): void {
+    if (id === this.hovered) return;
+    this.hovered = id;
+    this.renderer.domElement.style.cursor = id === undefined ? "" : "pointer";
+    this.showLabels();
+    this.draw();
+  }
+
+  private pick(event: PointerEvent): number | undefined {
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const point = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(point, this.camera);
+    let walls: number | undefined;
+    for (const hit of ray.intersectObjects([...this.objects.values()].map(({ group }) => group))) {
+      let node: Object3D | null = hit.object;
+      while (node && node.userData.object === undefined) node = node.parent;
+      const id = node?.userData.object as number | undefined;
+      if (id === undefined) continue;
+      // What stands before or behind a translucent wall is meant rather than the wall.
+      if (this.objects.get(id)?.object.type !== "wall") return id;
+      walls ??= id;
+    }
+    return walls;
+  }
+
+  private recolour(): void {
+    const stage = this.palette.get("stage");
+    this.scene.fog = new Fog(stage, 1, 2);
+    this.grid?.dispose();
+    this.grid?.removeFromParent();
+    this.grid = new GridHelper(120, 120, this.palette.get("grid"), this.palette.get("grid"));
+    this.grid.rotation.x = Math.PI / 2;
+    this.grid.position.z = -0.02;
+    (this.grid.material as LineBasicMaterial).transparent = true;
+    this.scene.add(this.grid);
+    this.figure.recolour(this.palette);
+    this.tracks.recolour(this.palette);
+  }
+
+  private showMap(changed: boolean, all = false): void {
+    const { map, selected } = this.input;
+    if (changed) {
+      disposeGroup(this.rooms);
+      this.rooms.removeFromParent();
+      this.rooms = roomsGroup(map, this.palette);
+      this.scene.add(this.rooms);
+    }
+    const gone = new Set(this.objects.keys());
+    for (const object of map.objects) {
+      gone.delete(object.id);
+      const shown = this.objects.get(object.id);
+      const isSelected = object.id === selected;
+      if (!all && shown?.object === object && shown.selected === isSelected) continue;
+      if (shown) this.remove(object.id);
+      const group = objectGroup(object, this.palette, isSelected, floorAt(object.pose.position, map));
+      this.objects.set(object.id, { object, selected: isSelected, group });
+      this.scene.add(group);
+    }
+    for (const id of gone) this.remove(id);
+    this.showLabels();
+  }
+
+  private remove(id: number): void {
+    const shown = this.objects.get(id);
+    if (!shown) return;
+    disposeGroup(shown.group);
+    shown.group.removeFromParent();
+    this.objects.delete(id);
+  }
+
+  private showLabels(): void {
+    this.labelled.clear();
+    const { map, selected } = this.input;
+    for (const room of map.rooms) {
+      const n = room.polygon.length;
+      const centre = room.polygon.reduce((sum, [x, y]) => sum.add(new Vector2(x / n, y / n)), new Vector2());
+      this.label(`Room ${room.id}`, `${room.area.toFixed(1)} m²`, new Vector3(centre.x, centre.y, floorOf(room, map)), "room");
+    }
+    for (const id of new Set([selected, this.hovered])) {
+      const object = id === undefined ? undefined : this.objects.get(id)?.object;
+      if (!object) continue;
+      const [x, y, z] = object.pose.position;
+      const top = object.corners ? Math.max(...object.corners.map((corner) => corner[2])) : z + 0.4;
+      this.label(objectName(object), "", new Vector3(x, y, object.type === "wall" ? z : top + 0.12), id === selected ? "selected" : "hover");
+    }
+  }
+
+  private label(name: string, detail: string, at: Vector3, kind: string): void {
+    const element = document.createElement("div");
+    element.className = `label label-${kind}`;
+    element.append(name);
+    if (detail) {
+      const small = document.createElement("small");
+      small.textContent = detail;
+      element.append(small);
+    }
+    const label = new CSS2DObject(element);
+    label.position.copy(at);
+    this.labelled.add(label);
+  }
+
+  private frameAll(): void {
+    const { map, track } = this.input;
+    const { min, max } = boundsOf(map, track, this.wearer.shown(performance.now())?.position);
+    const tall = map.objects.some((object) => object.type === "wall") ? 2.0 : 1.4;
+    const target = new Vector3((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, tall * 0.35);
+    this.goal = { target, distance: this.distanceFor(target, min, max, tall) };
+    if (reducedMotion()) this.ease(1);
+  }
+
+  /** How far away the box is whole in view from where the camera looks now. */
+  private distanceFor(target: Vector3, min: readonly number[], max: readonly number[], tall: number): number {
+    const look = this.camera.position.clone().sub(this.controls.target).normalize();
+    const side = new Vector3(0, 0, 1).cross(look).normalize();
+    const up = look.clone().cross(side);
+    const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
+    let distance = 4;
+    for (const x of [min[0] ?? 0, max[0] ?? 0])
+      for (const y of [min[1] ?? 0, max[1] ?? 0])
+        for (const z of [0, tall]) {
+          const p = new Vector3(x, y, z).sub(target);
+          const depth = p.dot(look);
+          distance = Math.max(distance, depth + Math.abs(p.dot(up)) / tangent, depth + Math.abs(p.dot(side)) / (tangent * this.camera.aspect));
+        }
+    return distance * 1.12;
+  }
+
+  /** A part of the way to where the camera shall be; false when it is there. */
+  private ease(part: number): boolean {
+    if (!this.goal) return false;
+    const { target, distance } = this.goal;
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const length = offset.length() + (distance - offset.length()) * part;
+    const there = this.controls.target.distanceTo(target) < 0.002 && Math.abs(length - distance) < 0.002;
+    this.controls.target.lerp(target, part);
+    this.camera.position.copy(this.controls.target).addScaledVector(offset.normalize(), length);
+    if (there) this.goal = undefined;
+    return !there;
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.host;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.labels.setSize(clientWidth, clientHeight);
+    this.tracks.resize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    if (this.auto) this.frameAll();
+    this.draw();
+  }
+
+  private draw(): void {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame((now) => {
+      this.requested = false;
+      this.frame(now);
+    });
+  }
+
+  private frame(now: number): void {
+    const sample = this.wearer.shown(now);
+    this.figure.show(sample);
+    if (this.input.follow && sample) {
+      const distance = this.goal?.distance ?? this.camera.position.distanceTo(this.controls.target);
+      this.goal = { target: new Vector3(sample.position[0], sample.position[1], 0.8), distance };
+    }
+    const easing = this.ease(reducedMotion() ? 1 : kEase);
+    this.controls.update();
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    const fog = this.scene.fog as Fog;
+    fog.near = distance * 0.9;
+    fog.far = distance * 2.4;
+    this.renderer.render(this.scene, this.camera);
+    this.labels.render(this.scene, this.camera);
+    if (easing || this.wearer.moving(now)) this.draw();
+  }
+}

@@ -28,6 +28,14 @@ std::vector<std::size_t> thinned(const Observation& observation, const std::vect
   return kept;
 }
 
+/// Distance to which the contacts of an observation are thinned, m: the short sides of a small screen are to keep
+/// enough of them for the robust loss to tell which ones strayed.
+double spacing_of(const graph::Landmark& landmark, double usual) {
+  constexpr double kOnShortestSide = 12.0;
+  if (landmark.kind == LandmarkKind::Wall) return usual;
+  return std::min(usual, std::min(landmark.x[4], landmark.x[5]) / kOnShortestSide);
+}
+
 /// Factor by which the noise of single contacts grows so that contacts on one side within the correlation time count as
 /// one.
 std::array<double, 5> inflation(const Observation& observation, const std::vector<TracePoint>& points,
@@ -79,9 +87,9 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
       state.graph.landmark_priors.push_back(
           {landmark, side, observation.landmark.x[static_cast<std::size_t>(side)], 1.0});
 
-  const auto kept = thinned(observation, points, config.hand.contact_spacing_m);
-  const auto wider =
-      inflation(observation, points, kept, config.hand.contact_spacing_m, config.hand.contact_correlation_s);
+  const double spacing = spacing_of(observation.landmark, config.hand.contact_spacing_m);
+  const auto kept = thinned(observation, points, spacing);
+  const auto wider = inflation(observation, points, kept, spacing, config.hand.contact_correlation_s);
   ObservationRecord record{landmark, 0, state.graph.contacts.size(), kept.size(), 0, begin_s, end_s};
   for (const std::size_t k : kept) {
     const HandContact& contact = trace.contacts[observation.contacts[k]];

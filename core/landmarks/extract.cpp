@@ -7,6 +7,7 @@
 
 #include "core/landmarks/geometry.hpp"
 #include "core/landmarks/sides.hpp"
+#include "core/landmarks/unbend.hpp"
 
 namespace kinemap {
 namespace {
@@ -62,14 +63,36 @@ bool wearer_inside(std::span<const TracePoint> points, const Surface& surface, c
   return 2 * static_cast<std::size_t>(inside) > surface.members.size();
 }
 
-Attempt table(std::span<const TracePoint> points, const Surface& surface, double floor_z,
-              const LandmarkConfig& config) {
+/// Mean square distance of the contacts from the sides that were drawn, m²; where the contour is open a side goes on.
+double contour_misfit(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
+  constexpr double kFar = 0.15;  // m: farther off is a lift-off or the way there
+  double sum = 0.0;
+  for (const Eigen::Vector2d& p : flat) {
+    const Eigen::Vector2d local = to_local(fit, p);
+    double nearest = kFar;
+    for (const graph::Edge side : {graph::Edge::MinusU, graph::Edge::PlusU, graph::Edge::MinusV, graph::Edge::PlusV})
+      if (fit.drawn[static_cast<std::size_t>(side) - 1])
+        nearest = std::min(nearest, distance_from_side(local, fit.size, fit.drawn, side));
+    sum += nearest * nearest;
+  }
+  return sum / static_cast<double>(flat.size());
+}
+
+std::vector<Eigen::Vector2d> from_above(std::span<const TracePoint> points, const Surface& surface) {
+  return in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+}
+
+Attempt table(std::span<const TracePoint> bent, const Surface& surface, double floor_z, const LandmarkConfig& config) {
   const double height = surface.offset - floor_z;
   if (height < config.table_min_height_m || height > config.table_max_height_m)
     return {std::nullopt, "a level surface, but not at the height of a table"};
-  const auto flat =
-      in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
-  const auto fit = fit_rectangle(flat, config);
+  const double rate = heading_rate(bent, [&](std::span<const TracePoint> points) {
+    const auto flat = from_above(points, surface);
+    const auto fit = fit_rectangle(flat, config);
+    return fit ? contour_misfit(flat, *fit) : HUGE_VAL;
+  });
+  const auto points = unbent(bent, rate);
+  const auto fit = fit_rectangle(from_above(points, surface), config);
   if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
   if (wearer_inside(points, surface, *fit)) return {std::nullopt, "a level contour round the wearer, no table", true};
   Observation seen;

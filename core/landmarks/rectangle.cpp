@@ -104,7 +104,7 @@ void assign_sides(Points points, IndexRange kept, const std::vector<Eigen::Vecto
   const SideCosts costs;
   const auto sides = choose_sides(contacts, fit.size, fit.drawn, costs, false);
   for (std::size_t k = 0; k < sides.size(); ++k)
-    if (sides[k] != Edge::None && !in_corner(contacts[k].p, fit.size, sides[k], costs))
+    if (sides[k] != Edge::None && !in_corner(contacts[k].p, fit.size, fit.drawn, sides[k], costs))
       fit.labels[kept.begin + k].edge = sides[k];
 }
 
@@ -156,7 +156,6 @@ IndexRange without_stubs(Points points, IndexRange kept, RectangleFit& fit) {
 
 /// The ends of an open contour lie in corners: the outermost contact there is also on the side that was not drawn.
 void assign_end_corners(Points points, IndexRange kept, RectangleFit& fit) {
-  constexpr double kOnSide = 0.06;  // m
   for (const Edge missing : kEdges) {
     if (fit.drawn[slot(missing)]) continue;
     for (const Edge side : kEdges) {
@@ -164,8 +163,8 @@ void assign_end_corners(Points points, IndexRange kept, RectangleFit& fit) {
       std::optional<std::size_t> end;
       double outermost = -HUGE_VAL;
       for (std::size_t i = kept.begin; i < kept.end; ++i) {
+        if (fit.labels[i].edge != side) continue;
         const Eigen::Vector2d local = to_local(fit, points[i]);
-        if (std::abs(side_error(local, fit.size, side)) > kOnSide) continue;
         const double out = (is_plus(missing) ? 1.0 : -1.0) * (is_u(missing) ? local.x() : local.y());
         if (out > outermost) outermost = out, end = i;
       }

@@ -22,11 +22,25 @@ using Costs = std::array<double, kStates>;
 
 double squared(double x) { return x * x; }
 
+/// The side that `side` meets at the end where `along` lies.
+Edge next_side(Edge side, double along) {
+  if (is_u(side)) return along < 0.0 ? Edge::MinusV : Edge::PlusV;
+  return along < 0.0 ? Edge::MinusU : Edge::PlusU;
+}
+
+/// How far `p` is beyond the nearer end of the side, m. Where the next side was not drawn the contour is open: nobody
+/// knows yet where this one ends.
+double beyond_end(const Eigen::Vector2d& p, const std::array<double, 2>& size, const std::array<bool, 4>& drawn,
+                  Edge side) {
+  const double along = is_u(side) ? p.y() : p.x();
+  const bool open = !drawn[static_cast<std::size_t>(next_side(side, along)) - 1];
+  return open ? 0.0 : std::max(0.0, std::abs(along) - 0.5 * size[is_u(side) ? 1 : 0]);
+}
+
 /// What it costs to say that the contact lies on this side, in squared standard deviations.
-double contact_cost(const SideQuery& contact, const std::array<double, 2>& size, Edge side, const SideCosts& price) {
-  const double across = side_error(contact.p, size, side);
-  const double along = is_u(side) ? contact.p.y() : contact.p.x();
-  const double beyond = std::max(0.0, std::abs(along) - 0.5 * size[is_u(side) ? 1 : 0]);
+double contact_cost(const SideQuery& contact, const std::array<double, 2>& size, const std::array<bool, 4>& allowed,
+                    Edge side, const SideCosts& price) {
+  const double across = side_error(contact.p, size, side), beyond = beyond_end(contact.p, size, allowed, side);
   const double parallel = is_u(side) ? std::abs(contact.travel.y()) : std::abs(contact.travel.x());
   const double angle = contact.travel.isZero() ? 0.0 : std::acos(std::min(1.0, parallel));
   const double kept = contact.before == side ? price.hysteresis : 0.0;
@@ -38,7 +52,7 @@ Costs contact_costs(const SideQuery& contact, const std::array<double, 2>& size,
   Costs out;
   for (std::size_t k = 0; k < 4; ++k) {
     const Edge side = kRound[k];
-    out[k] = allowed[static_cast<std::size_t>(side) - 1] ? contact_cost(contact, size, side, price) : HUGE_VAL;
+    out[k] = allowed[static_cast<std::size_t>(side) - 1] ? contact_cost(contact, size, allowed, side, price) : HUGE_VAL;
     out[k + 4] = price.off - (contact.before == Edge::None ? price.hysteresis : 0.0);
   }
   return out;
@@ -86,10 +100,16 @@ double side_error(const Eigen::Vector2d& p, const std::array<double, 2>& size, E
   return (is_plus(side) ? -0.5 : 0.5) * size[is_u(side) ? 0 : 1] + (is_u(side) ? p.x() : p.y());
 }
 
-bool in_corner(const Eigen::Vector2d& p, const std::array<double, 2>& size, Edge side, const SideCosts& price) {
-  const double length = size[is_u(side) ? 1 : 0];
+double distance_from_side(const Eigen::Vector2d& p, const std::array<double, 2>& size, const std::array<bool, 4>& drawn,
+                          Edge side) {
+  return std::hypot(side_error(p, size, side), beyond_end(p, size, drawn, side));
+}
+
+bool in_corner(const Eigen::Vector2d& p, const std::array<double, 2>& size, const std::array<bool, 4>& drawn, Edge side,
+               const SideCosts& price) {
+  const double along = is_u(side) ? p.y() : p.x(), length = size[is_u(side) ? 1 : 0];
   const double clear = std::min(price.corner_clear_m, price.corner_clear_share * length);
-  return std::abs(is_u(side) ? p.y() : p.x()) > 0.5 * length - clear;
+  return std::abs(along) > 0.5 * length - clear && drawn[static_cast<std::size_t>(next_side(side, along)) - 1];
 }
 
 std::vector<Edge> choose_sides(std::span<const SideQuery> contacts, const std::array<double, 2>& size,

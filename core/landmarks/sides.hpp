@@ -44,8 +44,14 @@ std::vector<graph::Edge> choose_sides(std::span<const SideQuery> contacts, const
 /// Distance from `p` to the line of the side, signed outward from the centre of the axes, m.
 double side_error(const Eigen::Vector2d& p, const std::array<double, 2>& size, graph::Edge side);
 
-/// Whether `p`, on `side`, lies so near to one of its ends that the corner, which people cut, pulls it inwards.
-bool in_corner(const Eigen::Vector2d& p, const std::array<double, 2>& size, graph::Edge side, const SideCosts& price);
+/// Distance from `p` to the side between its corners, m; the side goes on where the next one is not `drawn`.
+double distance_from_side(const Eigen::Vector2d& p, const std::array<double, 2>& size, const std::array<bool, 4>& drawn,
+                          graph::Edge side);
+
+/// Whether `p`, on `side`, lies so near to one of its ends that the corner, which people cut, pulls it inwards. Where
+/// the next side was not `drawn` there is no corner.
+bool in_corner(const Eigen::Vector2d& p, const std::array<double, 2>& size, const std::array<bool, 4>& drawn,
+               graph::Edge side, const SideCosts& price);
 
 /// Unit direction of travel at each point, from its neighbours within `half_window_m` of path on both sides; zero where
 /// the hand dwells.

@@ -50,7 +50,7 @@ std::size_t reassign(std::span<ContactFactor> contacts, const graph::Graph& grap
     if (followed[static_cast<std::size_t>(corner)] >= kFollowed) corner = Edge::None;
     // The end of an open contour holds the length of the side: it stays on its side even where it strayed.
     if (corner != Edge::None && !crossing(edge, corner)) edge = contact.edge;
-    if (corner == Edge::None && edge != Edge::None && in_corner(asked[k].p, size, edge, costs)) edge = Edge::None;
+    if (corner == Edge::None && edge != Edge::None && in_corner(asked[k].p, size, kAll, edge, costs)) edge = Edge::None;
     if (edge == contact.edge && corner == contact.corner) continue;
     contact.edge = edge, contact.corner = corner;
     ++changed;

@@ -35,6 +35,19 @@ TEST(ChooseSides, FollowsTheContour) {
   }
 }
 
+// Nobody knows where a side ends beyond which nothing was drawn: contacts there speak of it like all others.
+TEST(ChooseSides, AnOpenSideGoesOn) {
+  const std::array<bool, 4> drawn{false, true, true, false};  // +u and −v
+  const auto contacts = along({{-1.2, -0.4}, {0.8, -0.4}, {0.8, 0.4}});
+  const auto sides = choose_sides(contacts, kSize, drawn, {}, false);
+  EXPECT_EQ(sides.front(), Edge::MinusV);
+  EXPECT_FALSE(in_corner(contacts.front().p, kSize, drawn, Edge::MinusV, {}));
+  EXPECT_TRUE(in_corner(contacts.front().p, kSize, kAll, Edge::MinusV, {}));
+  EXPECT_TRUE(in_corner({0.79, -0.4}, kSize, drawn, Edge::MinusV, {}));
+  EXPECT_NEAR(distance_from_side({-1.2, -0.3}, kSize, drawn, Edge::MinusV), 0.1, 1e-12);
+  EXPECT_NEAR(distance_from_side({1.2, -0.1}, kSize, drawn, Edge::MinusV), 0.5, 1e-12);
+}
+
 // A screen a hand's breadth high: nearness alone would jump between the long sides.
 TEST(ChooseSides, TheOrderOfSidesDecidesWhereNearnessDoesNot) {
   const std::array<double, 2> flat{0.8, 0.2};

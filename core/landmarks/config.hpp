@@ -10,7 +10,7 @@ struct LandmarkConfig {
   double reach_speed_m_per_s =
       0.5;                   ///< a hand faster than this (and twice its usual speed) at either end is still on its way
   double reach_max_s = 1.5;  ///< longest lead-in or lead-out looked for by speed
-  double wall_min_extent_m = 0.6;      ///< first and last contact of a wall are at least so far apart
+  double wall_min_extent_m = 0.4;      ///< first and last contact of a wall are at least so far apart
   double rectangle_min_side_m = 0.15;  ///< shortest side of a table or screen
   double rectangle_max_side_m = 4.0;   ///< longest side of a table or screen
   double corner_window_m = 0.18;       ///< length of the line fits to both sides of a corner (paper, section IV)

@@ -15,15 +15,16 @@ namespace {
 using graph::Landmark;
 using graph::LandmarkKind;
 
-constexpr double kMinLeftover = 3.0;   // s
-constexpr double kCutStep = 0.75;      // s between the cuts that are tried in a gesture over two objects
-constexpr double kMostOfAPart = 0.75;  // of the contacts of such a part are on its object
-constexpr double kHighestEdge = 1.1;   // m over the floor, of a table
-constexpr int kDeepest = 3;            // leftovers of leftovers
-constexpr int kNoLeftovers = kDeepest;
-constexpr double kMostOfIt = 0.75;     // of the contacts lie on sides where sides were drawn
-constexpr double kLongestPart = 2.5;   // m: longer is a wall, whatever else the hand did
-constexpr double kSecondChoice = 0.8;  // part of the trace that the surface that holds less of it must still hold
+constexpr double kMinPart = 3.0;        // s: an object that shares its gesture with another one takes so long to draw
+constexpr double kMinBesideWall = 1.8;  // s: a wall after a wall
+constexpr double kLongerWall = 1.5;     // × wall_min_extent_m, of a wall beside something else
+constexpr double kCutStep = 0.75;       // s between the cuts that are tried in a gesture over two objects
+constexpr double kMostOfAPart = 0.75;   // of the contacts of such a part are on its object
+constexpr double kHighestEdge = 1.1;    // m over the floor, of a table
+constexpr int kDeepest = 3;             // leftovers of leftovers
+constexpr double kMostOfIt = 0.75;      // of the contacts lie on sides where sides were drawn
+constexpr double kLongestPart = 2.5;    // m: longer is a wall, whatever else the hand did
+constexpr double kSecondChoice = 0.8;   // part of the trace that the surface that holds less of it must still hold
 
 struct Attempt {
   std::optional<Observation> observation;
@@ -201,23 +202,21 @@ void shift(Observation& observation, std::size_t by) {
   for (auto& index : observation.contacts) index += by;
 }
 
-/// Looks for objects in points[begin, end), then in what is left of it before and after: one gesture may go from one
-/// wall to the next.
-void extract_range(std::span<const TracePoint> points, IndexRange range, double floor_z, const LandmarkConfig& config,
-                   int depth, Extraction& out) {
+/// What most of points[begin, end) were drawn on.
+struct MainObject {
+  std::optional<Observation> observation;
+  std::string reason;   ///< where it is none
+  IndexRange contacts;  ///< of the object, else of the surface that was looked at
+};
+
+MainObject main_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
+                       const LandmarkConfig& config) {
   const auto part = points.subspan(range.begin, range.end - range.begin);
-  if (part.size() < 8) {
-    if (depth == 0) out.reason = "too few contacts";
-    return;
-  }
-  // What is left beside an object is mostly the way to it; another object takes a while to draw.
-  if (depth > 0 && part.back().time_s - part.front().time_s < kMinLeftover) return;
+  if (part.size() < 8) return {{}, "too few contacts", {range.begin, range.begin}};
   const auto surfaces = find_surfaces(part, config);
-  if (surfaces.empty()) {
-    if (depth == 0) out.reason = "the hand did not stay on one surface";
-    return;
-  }
-  std::size_t first = range.begin + surfaces[0].members.front(), last = range.begin + surfaces[0].members.back();
+  if (surfaces.empty()) return {{}, "the hand did not stay on one surface", {range.begin, range.begin}};
+  MainObject out;
+  out.contacts = {range.begin + surfaces[0].members.front(), range.begin + surfaces[0].members.back() + 1};
   bool round_wearer = false;
   for (const Surface& surface : surfaces) {
     // One long edge of a table is no wall beside it, even where the table could not be made out.
@@ -225,27 +224,68 @@ void extract_range(std::span<const TracePoint> points, IndexRange range, double 
     auto attempt = classify(part, surface, floor_z, config);
     if (attempt.observation) {
       shift(*attempt.observation, range.begin);
-      first = attempt.observation->contacts.front(), last = attempt.observation->contacts.back();
-      out.observations.push_back(std::move(*attempt.observation));
+      out.contacts = {attempt.observation->contacts.front(), attempt.observation->contacts.back() + 1};
+      out.observation = std::move(attempt.observation);
       break;
     }
-    if (depth == 0 && out.reason.empty()) out.reason = attempt.reason;
+    if (out.reason.empty()) out.reason = attempt.reason;
     round_wearer = attempt.round_wearer;
   }
-  if (depth >= kDeepest) return;
-  extract_range(points, {range.begin, first}, floor_z, config, depth + 1, out);
-  extract_range(points, {last + 1, range.end}, floor_z, config, depth + 1, out);
+  return out;
 }
 
 /// The one object that nearly all of points[begin, end) were drawn on, if there is one.
 std::optional<Observation> single_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
                                          const LandmarkConfig& config) {
-  Extraction found;
-  extract_range(points, range, floor_z, config, kNoLeftovers, found);
-  if (found.observations.size() != 1) return std::nullopt;
-  const auto explained = static_cast<double>(found.observations[0].contacts.size());
-  if (explained < kMostOfAPart * static_cast<double>(range.end - range.begin)) return std::nullopt;
-  return std::move(found.observations[0]);
+  auto found = main_object(points, range, floor_z, config).observation;
+  const auto all = static_cast<double>(range.end - range.begin);
+  if (found && static_cast<double>(found->contacts.size()) < kMostOfAPart * all) found.reset();
+  return found;
+}
+
+bool is_rectangle(const Observation& seen) { return seen.landmark.kind != LandmarkKind::Wall; }
+
+/// What is asked of an object that shares its gesture with another one.
+struct PartRule {
+  double min_s;           ///< it takes so long to draw
+  LandmarkConfig config;  ///< a wall is longer than one that has a gesture of its own
+};
+
+/// Mostly it is the way to the other object, and straight ways look like walls. But who touches walls goes on to the
+/// next wall, and may do that briefly.
+PartRule part_rule(const LandmarkConfig& config, bool beside_wall) {
+  PartRule rule{beside_wall ? kMinBesideWall : kMinPart, config};
+  if (!beside_wall) rule.config.wall_min_extent_m *= kLongerWall;
+  return rule;
+}
+
+/// A closed contour is no accident; two strokes on the way may be.
+bool says_more(const Observation& a, const Observation& b) {
+  return a.closed != b.closed ? a.closed : a.contacts.size() > b.contacts.size();
+}
+
+/// Looks for an object in what an object at one end (`after` it, or before) left of a gesture. The way between the two
+/// may be long: it is cut off step by step. What then remains must be a rectangle, since a part that looks like a wall
+/// can be cut out of any way.
+void extract_leftover(std::span<const TracePoint> points, IndexRange range, bool after, double floor_z,
+                      const PartRule& rule, int depth, std::vector<Observation>& out) {
+  std::optional<Observation> best;
+  const auto duration = [&](IndexRange r) {
+    return r.begin < r.end ? points[r.end - 1].time_s - points[r.begin].time_s : 0.0;
+  };
+  for (IndexRange part = range; depth < kDeepest && duration(part) >= rule.min_s;) {
+    auto found = single_object(points, part, floor_z, rule.config);
+    if (found && !is_rectangle(*found) && duration(part) < duration(range)) found.reset();
+    if (found && (!best || says_more(*found, *best))) best = std::move(found);
+    const double shorter = duration(part) - kCutStep;
+    while (part.begin < part.end && duration(part) > shorter) after ? ++part.begin : --part.end;
+  }
+  if (!best) return;
+  // What is nearer to the other object is the way: a hand that is carried level looks like a table.
+  const IndexRange rest =
+      after ? IndexRange{best->contacts.back() + 1, range.end} : IndexRange{range.begin, best->contacts.front()};
+  out.push_back(std::move(*best));
+  extract_leftover(points, rest, after, floor_z, rule, depth + 1, out);
 }
 
 /// Two edges of a table, seen from outside its corner, look like two walls; walls at that height surround the wearer.
@@ -262,27 +302,36 @@ bool may_be_table_corner(std::span<const TracePoint> points, const Observation& 
 }
 
 /// A gesture over two objects one after the other, of which neither stands out in the whole: two walls touched at one
-/// height look like a level surface, two screens like none. Tries cuts in time; both parts must be objects by
-/// themselves.
+/// height look like a level surface, two screens like none. Tries cuts in time, one where the first object ends and one
+/// where the second begins, since the way between rectangles may be long; both parts must be objects by themselves.
 std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRange range, double floor_z,
-                                     const LandmarkConfig& config) {
-  std::vector<Observation> best;
-  std::size_t most = 0;
-  double next_s = points[range.begin].time_s + kMinLeftover;
+                                     const PartRule& rule) {
+  std::vector<std::size_t> cuts;
+  double next_s = points[range.begin].time_s + rule.min_s;
   for (std::size_t cut = range.begin; cut < range.end; ++cut) {
     if (points[cut].time_s < next_s) continue;
-    if (points[range.end - 1].time_s - points[cut].time_s < kMinLeftover) break;
+    if (points[range.end - 1].time_s - points[cut].time_s < rule.min_s) break;
     next_s = points[cut].time_s + kCutStep;
-    auto before = single_object(points, {range.begin, cut}, floor_z, config);
-    if (!before) continue;
-    auto after = single_object(points, {cut, range.end}, floor_z, config);
-    if (!after || may_be_table_corner(points, *before, *after, floor_z)) continue;
-    const std::size_t explained = before->contacts.size() + after->contacts.size();
-    if (explained <= most) continue;
-    most = explained;
-    best = {std::move(*before), std::move(*after)};
+    cuts.push_back(cut);
   }
-  return best;
+  std::vector<std::optional<Observation>> before, after;
+  for (const std::size_t cut : cuts) {
+    before.push_back(single_object(points, {range.begin, cut}, floor_z, rule.config));
+    after.push_back(single_object(points, {cut, range.end}, floor_z, rule.config));
+  }
+  const Observation *first = nullptr, *second = nullptr;
+  std::size_t most = 0;
+  for (std::size_t a = 0; a < cuts.size(); ++a) {
+    for (std::size_t b = a; before[a] && b < cuts.size(); ++b) {
+      if (!after[b] || (a != b && !(is_rectangle(*before[a]) && is_rectangle(*after[b])))) continue;
+      const std::size_t explained = before[a]->contacts.size() + after[b]->contacts.size();
+      if (explained <= most || may_be_table_corner(points, *before[a], *after[b], floor_z)) continue;
+      most = explained;
+      first = &*before[a], second = &*after[b];
+    }
+  }
+  if (first == nullptr) return {};
+  return {*first, *second};
 }
 
 }  // namespace
@@ -290,10 +339,21 @@ std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRa
 Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config) {
   Extraction out;
   const IndexRange drawn = without_reach(points, config);
-  extract_range(points, drawn, floor_z, config, 0, out);
-  if (out.observations.empty() && drawn.end > drawn.begin)
-    out.observations = two_objects(points, drawn, floor_z, config);
-  if (!out.observations.empty()) out.reason.clear();
+  auto main = main_object(points, drawn, floor_z, config);
+  const bool wall = main.observation && !is_rectangle(*main.observation);
+  const PartRule rule = part_rule(config, wall);
+  if (main.observation) {
+    out.observations.push_back(std::move(*main.observation));
+  } else if (drawn.end > drawn.begin) {
+    out.observations = two_objects(points, drawn, floor_z, rule);
+  }
+  if (out.observations.size() < 2) {
+    extract_leftover(points, {drawn.begin, main.contacts.begin}, false, floor_z, rule, 0, out.observations);
+    extract_leftover(points, {main.contacts.end, drawn.end}, true, floor_z, rule, 0, out.observations);
+  }
+  if (out.observations.empty()) out.reason = main.reason;
+  std::sort(out.observations.begin(), out.observations.end(),
+            [](const Observation& a, const Observation& b) { return a.contacts.front() < b.contacts.front(); });
   return out;
 }
 

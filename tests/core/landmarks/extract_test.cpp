@@ -133,12 +133,47 @@ TEST(Extract, TwoWallsInOneGesture) {
   EXPECT_GT(std::abs(wrap_angle(found.observations[0].landmark.x[0] - found.observations[1].landmark.x[0])), 1.4);
 }
 
+TEST(Extract, ANarrowPieceOfWallIsAWall) {
+  const auto found = extract_landmarks(trace({{0, 1, 1.3}, {0.5, 1, 1.2}}), 0.0, kConfig);
+  ASSERT_EQ(found.observations.size(), 1u) << found.reason;
+  EXPECT_EQ(found.observations[0].landmark.kind, LandmarkKind::Wall);
+}
+
+TEST(Extract, ABriefWallAfterAWall) {
+  const auto found =
+      extract_landmarks(trace({{0, 1.5, 1.2}, {1.5, 1.5, 1.6}, {3, 1.5, 1.2}, {3, 0.7, 1.5}}), 0.0, kConfig);
+  ASSERT_EQ(found.observations.size(), 2u) << found.reason;
+  for (const auto& seen : found.observations) EXPECT_EQ(seen.landmark.kind, LandmarkKind::Wall);
+  // Beside a screen the same is the hand on its way.
+  auto path = round_trip(upright_rectangle({1.0, 1.5, 1.3}, -std::numbers::pi / 2.0, 1.4, 0.8));
+  const Eigen::Vector3d end = path.back() + Eigen::Vector3d(0.0, -0.1, 0.0);
+  path.push_back(end);
+  path.push_back(end + Eigen::Vector3d(0.0, -0.5, 0.2));
+  const auto screen = extract_landmarks(trace(path), 0.0, kConfig);
+  ASSERT_EQ(screen.observations.size(), 1u);
+  EXPECT_EQ(screen.observations[0].landmark.kind, LandmarkKind::Screen);
+}
+
+/// The hand is carried from one screen to the next for as long as the smaller one takes.
+TEST(Extract, TwoScreensFarApartInOneGesture) {
+  const auto first = round_trip(upright_rectangle({0.0, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.5, 0.32));
+  const auto second = round_trip(upright_rectangle({2.2, 0.6, 1.2}, std::numbers::pi, 1.3, 0.8));
+  std::vector<Eigen::Vector3d> path = first;
+  path.insert(path.end(), {{0.2, 1.1, 0.8}, {1.6, 0.4, 0.9}});
+  path.insert(path.end(), second.begin(), second.end());
+  const auto found = extract_landmarks(trace(path), 0.0, kConfig);
+  ASSERT_EQ(found.observations.size(), 2u) << found.reason;
+  for (const auto& seen : found.observations) EXPECT_EQ(seen.landmark.kind, LandmarkKind::Screen);
+  EXPECT_NEAR(found.observations[0].landmark.x[4], 0.5, 0.02);
+  EXPECT_NEAR(found.observations[1].landmark.x[4], 1.3, 0.02);
+}
+
 TEST(Extract, SaysWhyNothingWasFound) {
   // A level surface at the height of the knees.
   const auto low = level_rectangle({0.0, 0.0, 0.1}, 0.0, 1.0, 0.6);
   EXPECT_NE(extract_landmarks(trace(round_trip(low)), 0.0, kConfig).reason.find("height"), std::string::npos);
   // A short straight line.
-  EXPECT_NE(extract_landmarks(trace({{0, 1, 1}, {0.5, 1, 1}}), 0.0, kConfig).reason.find("too short"),
+  EXPECT_NE(extract_landmarks(trace({{0, 1, 1}, {0.3, 1, 1}}), 0.0, kConfig).reason.find("too short"),
             std::string::npos);
   EXPECT_NE(extract_landmarks({}, 0.0, kConfig).reason.find("few"), std::string::npos);
   // Through the air.

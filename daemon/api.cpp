@@ -2,23 +2,33 @@
 #include "daemon/api.hpp"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
+#include <cstdio>
+#include <random>
 #include <utility>
 
 #include "daemon/export_routes.hpp"
 #include "daemon/page.hpp"
 #include "daemon/queries.hpp"
-#include "protocol/map_json.hpp"
 
 namespace kinemap {
 namespace {
+
+constexpr std::chrono::milliseconds kLookPeriod{40};
+
+/// Tells this run of the daemon from any other.
+std::string random_name() {
+  std::random_device random;
+  char text[17];
+  std::snprintf(text, sizeof text, "%08x%08x", random(), random());
+  return text;
+}
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
 Api::Api(Sources sources, const Config::Suit& suit, std::uint16_t suit_port)
-    : sources_(std::move(sources)), suit_(suit), suit_port_(suit_port), started_s_(now_s()) {
+    : sources_(std::move(sources)), suit_(suit), suit_port_(suit_port), started_s_(now_s()), history_(random_name()) {
   add_page_routes(routes_);
   add_routes();
   add_export_routes(routes_, sources_);
@@ -32,7 +42,8 @@ void Api::add_routes() {
   };
   add("/healthz", "Whether the daemon gets what it needs; 200 while it lives.", {}, "health",
       [this](const Call&) { return reply_of(health_text(status())); });
-  add("/api/v1/map", "The whole map.", {}, "map", [this](const Call&) { return Reply{.body = map_text()}; });
+  add("/api/v1/map", "The whole map, or what changed since a revision.", map_params(), "map",
+      [this](const Call& call) { return query_map(history(), call.params); });
   add("/api/v1/objects", "Objects by type, function and place.", object_params(), "objects",
       [this](const Call& call) { return reply_of(query_objects(*sources_.map(), call.params)); });
   add("/api/v1/objects/{id}", "One object.", {}, "object",
@@ -40,7 +51,11 @@ void Api::add_routes() {
   add("/api/v1/trajectory", "The optimised key poses of the pelvis.", trajectory_params(), "trajectory",
       [this](const Call& call) { return reply_of(query_trajectory(*sources_.map(), call.params)); });
   add("/api/v1/pose", "Where the wearer is now.", {}, "pose_now",
-      [this](const Call&) { return reply_of(query_pose(*sources_.map(), sources_.body())); });
+      [this](const Call&) { return reply_of(query_pose(*sources_.map(), sources_.body(), now_s())); });
+  add("/api/v1/body", "The 23 segments of the wearer's body now.", {}, "body",
+      [this](const Call&) { return reply_of(query_body(*sources_.map(), sources_.body(), now_s())); });
+  add("/api/v1/events", "What happened lately, the oldest first.", event_params(), "events",
+      [this](const Call& call) { return reply_of(query_events(events_, call.params)); });
   add("/api/v1/status", "What was received, detected, mapped and dropped.", {}, "status",
       [this](const Call&) { return reply_of(status_text()); });
   add("/api/v1/stream", "The WebSocket: revisions, poses and events as they come.", {}, "error", [](const Call&) {
@@ -48,14 +63,17 @@ void Api::add_routes() {
   });
 }
 
-SharedText Api::map_text() {
-  auto map = sources_.map();
-  if (map != map_of_text_) {
-    map_text_ = std::make_shared<const std::string>(
-        to_json(*map).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    map_of_text_ = std::move(map);
-  }
-  return map_text_;
+MapHistory& Api::history() {
+  history_.update(sources_.map());
+  return history_;
+}
+
+void Api::look(std::chrono::steady_clock::time_point now) {
+  if (now < look_due_) return;
+  look_due_ = now + kLookPeriod;
+  while (const auto notice = sources_.take_notice()) events_.add(*notice);
+  events_.look(
+      {sources_.map(), sources_.body().time_s, sources_.pipeline().tracker.tracing, is_receiving(sources_.suit())});
 }
 
 Status Api::status() {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "daemon/answer.hpp"
+#include "daemon/live_events.hpp"
+#include "daemon/map_history.hpp"
 #include "daemon/routes.hpp"
 #include "daemon/sources.hpp"
 #include "daemon/status.hpp"
@@ -25,8 +28,11 @@ class Api {
   /// The same questions by path, below /api/v1/ ("objects", "objects/7", "pose", …).
   Reply query(std::string_view path, const Params& params);
 
-  /// The map's JSON, made once per revision for everyone who asks.
-  SharedText map_text();
+  /// Takes note of what has changed; to be called often.
+  void look(std::chrono::steady_clock::time_point now);
+  /// Knows the newest map.
+  MapHistory& history();
+  [[nodiscard]] const LiveEvents& events() const { return events_; }
   std::string status_text();
   [[nodiscard]] const Sources& sources() const { return sources_; }
   [[nodiscard]] const Routes& routes() const { return routes_; }
@@ -42,8 +48,9 @@ class Api {
   double started_s_;
   ApiCounts counts_;
   Routes routes_;
-  std::shared_ptr<const MapSnapshot> map_of_text_;  // what map_text_ says
-  SharedText map_text_;
+  MapHistory history_;
+  LiveEvents events_;
+  std::chrono::steady_clock::time_point look_due_{};
 };
 
 }  // namespace kinemap

@@ -46,17 +46,19 @@ bool Outbox::drop_oldest_event() {
   return true;
 }
 
-Outbox::Text Outbox::next() {
-  Text text;
+Outbox::Next Outbox::next() {
+  Next next;
   for (auto* queue : {&answers_, &events_}) {
-    if (text || queue->empty()) continue;
-    text = std::move(queue->front());
+    if (next.text || queue->empty()) continue;
+    next.text = std::move(queue->front());
     queue->pop_front();
   }
-  for (Text& place : newest_)
-    if (!text) text = std::exchange(place, nullptr);
-  if (text) bytes_ -= text->size();
-  return text;
+  for (std::size_t i = 0; i < kTopicCount && !next.text; ++i)
+    next = {std::exchange(newest_[i], nullptr), static_cast<Topic>(i) == Topic::Map};
+  if (next.text) bytes_ -= next.text->size();
+  return next;
 }
+
+void Outbox::clear() { *this = Outbox(budget_); }
 
 }  // namespace kinemap

@@ -10,9 +10,9 @@
 
 namespace kinemap {
 
-enum class Topic : std::uint8_t { Map, Pose, Status, Events };
-inline constexpr std::size_t kTopicCount = 4;
-inline constexpr std::array<const char*, kTopicCount> kTopicNames{"map", "pose", "status", "events"};
+enum class Topic : std::uint8_t { Map, Pose, Body, Status, Events };
+inline constexpr std::size_t kTopicCount = 5;
+inline constexpr std::array<const char*, kTopicCount> kTopicNames{"map", "pose", "body", "status", "events"};
 
 /// What one WebSocket client has still to be sent, within a byte budget. Answers are kept, news are replaced by newer
 /// news of the same topic (events: the oldest go first), so that a slow client skips to the newest instead of falling
@@ -34,8 +34,14 @@ class Outbox {
   Added add_news(Topic topic, Text text);
   /// News of this topic are not wanted any more.
   void forget(Topic topic);
-  /// Takes the next message out; null when there is none. Answers come first, the map before the pose.
-  Text next();
+  struct Next {
+    Text text;  ///< null: there is none
+    bool map = false;
+  };
+  /// Takes the next message out. Answers come first, then events, then the map before the pose.
+  Next next();
+  /// Forgets everything.
+  void clear();
 
   /// Bytes that wait.
   [[nodiscard]] std::size_t bytes() const { return bytes_; }

@@ -61,6 +61,17 @@ Filter read_filter(ParamReader& reader) {
   return filter;
 }
 
+ApiError no_suit() {
+  return {503, "no_suit", "no frame of a suit has come yet; /api/v1/status says what was received"};
+}
+
+Json head_of(const MapSnapshot& map, const LiveBody& body, double now_s) {
+  return {{"time", rounded(body.time_s)},
+          {"age", rounded(std::max(0.0, now_s - body.arrived_s))},
+          {"revision", map.revision},
+          {"frame", "map"}};
+}
+
 struct Found {
   const MapObject* object;
   double distance_m;
@@ -144,14 +155,62 @@ Answer query_trajectory(const MapSnapshot& map, const Params& params) {
   return text_of({{"revision", map.revision}, {"frame", "map"}, {"poses", std::move(poses)}});
 }
 
-Answer query_pose(const MapSnapshot& map, const LiveBody& body) {
-  if (!body.known)
-    return ApiError{503, "no_suit", "no frame of a suit has come yet; /api/v1/status says what was received"};
+Answer query_pose(const MapSnapshot& map, const LiveBody& body, double now_s) {
+  if (!body.known) return no_suit();
   const Pose T_odom_pelvis = body.T_odom(Segment::Pelvis);
-  Json json = {{"time", rounded(body.time_s)}, {"revision", map.revision}, {"frame", "map"}};
+  Json json = head_of(map, body, now_s);
   json.update(to_json(map.T_map_odom * T_odom_pelvis));
   json["odometry"] = to_json(T_odom_pelvis);
   return text_of(json);
+}
+
+Answer query_body(const MapSnapshot& map, const LiveBody& body, double now_s) {
+  if (!body.known) return no_suit();
+  Json json = head_of(map, body, now_s);
+  Json& segments = json["segments"] = Json::array();
+  const auto short_number = [](double value) { return std::round(value * 1e4) / 1e4 + 0.0; };
+  for (std::size_t i = 0; i < kSegmentCount; ++i) {
+    const Pose pose = map.T_map_odom * body.T_odom(static_cast<Segment>(i));
+    Json& numbers = segments.emplace_back(Json::array());
+    for (const double value : {pose.p.x(), pose.p.y(), pose.p.z(), pose.q.w(), pose.q.x(), pose.q.y(), pose.q.z()})
+      numbers.push_back(short_number(value));
+  }
+  json["correction"] = to_json(map.T_map_odom);
+  return text_of(json);
+}
+
+std::vector<ParamSpec> map_params() {
+  return {{"since", R"({"type":"integer","minimum":0})", "A revision that the client has: only what changed since."},
+          {"run", R"({"type":"string"})",
+           "The `run` of the map that the client has; revisions of another run are unknown."}};
+}
+
+Reply query_map(MapHistory& history, const Params& params) {
+  ParamReader reader(params);
+  const auto revision = reader.count("since", 0, std::numeric_limits<std::size_t>::max());
+  const auto run = reader.text("run");
+  if (run && !revision) reader.fail("run", *run, "used with since");
+  if (reader.error()) return error_reply(*reader.error());
+  return {.body = revision ? history.since({*revision, run.value_or("")}) : history.whole()};
+}
+
+std::vector<ParamSpec> event_params() {
+  return {{"since", R"({"type":"integer","minimum":0})", "The number of an event: only later ones."},
+          {"limit", R"({"type":"integer","minimum":1})", "At most so many, the newest."}};
+}
+
+Answer query_events(const LiveEvents& events, const Params& params) {
+  ParamReader reader(params);
+  const std::size_t since = reader.count("since", 0, std::numeric_limits<std::size_t>::max()).value_or(0);
+  const std::size_t limit = reader.count("limit", 1, LiveEvents::kKept).value_or(LiveEvents::kKept);
+  if (reader.error()) return *reader.error();
+  const auto& all = events.all();
+  const auto later = [&](const LiveEvent& event) { return event.number > since; };
+  const auto count = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), later));
+  std::string text;
+  for (auto it = all.end() - static_cast<std::ptrdiff_t>(std::min(count, limit)); it != all.end(); ++it)
+    text += (text.empty() ? "" : ",") + *it->data;
+  return R"({"newest":)" + std::to_string(events.newest()) + R"(,"events":[)" + text + "]}";
 }
 
 }  // namespace kinemap

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "core/map.hpp"
+#include "daemon/live_events.hpp"
+#include "daemon/map_history.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/routes.hpp"
 
@@ -22,8 +24,18 @@ Answer query_object(const MapSnapshot& map, std::string_view id);
 std::vector<ParamSpec> trajectory_params();
 Answer query_trajectory(const MapSnapshot& map, const Params& params);
 
-/// Where the wearer is now: T_map_odom · T_odom_pelvis.
-Answer query_pose(const MapSnapshot& map, const LiveBody& body);
+/// Where the wearer is now: T_map_odom · T_odom_pelvis; `now_s` is the steady clock's.
+Answer query_pose(const MapSnapshot& map, const LiveBody& body, double now_s);
+/// The same for each segment.
+Answer query_body(const MapSnapshot& map, const LiveBody& body, double now_s);
+
+/// The whole map, or with since (and run) what changed.
+std::vector<ParamSpec> map_params();
+Reply query_map(MapHistory& history, const Params& params);
+
+/// The newest events; parameters since (number of an event that the client has), limit.
+std::vector<ParamSpec> event_params();
+Answer query_events(const LiveEvents& events, const Params& params);
 
 /// Level distance (m) from a point of the map frame to the object's outline, 0 inside it.
 double level_distance(const MapObject& object, const Eigen::Vector2d& point);

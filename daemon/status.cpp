@@ -16,10 +16,6 @@ constexpr double kSilenceS = 2.0;  // without frames for so long, the suit does 
 
 double rounded(double value, double per_unit = 1e3) { return std::round(value * per_unit) / per_unit + 0.0; }
 
-bool receiving(const ReceiverState& suit) {
-  return suit.counts.last_frame_s >= 0.0 && suit.now_s - suit.counts.last_frame_s < kSilenceS;
-}
-
 Json stream_json(const AssemblerStats& s) {
   Json faults = Json::object();
   for (std::size_t i = 0; i < s.faults.size(); ++i) faults[mxtp::to_string(static_cast<mxtp::Fault>(i))] = s.faults[i];
@@ -68,7 +64,7 @@ Json wearer_json(const WearerInfo& wearer) {
 
 Json suit_json(const Status& status) {
   const ReceiverState& suit = status.suit;
-  Json json = {{"receiving", receiving(suit)},
+  Json json = {{"receiving", is_receiving(suit)},
                {"transport", status.suit_config.transport},
                {"address", status.suit_config.address},
                {"port", status.suit_port}};
@@ -160,6 +156,10 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 }  // namespace
 
+bool is_receiving(const ReceiverState& suit) {
+  return suit.counts.last_frame_s >= 0.0 && suit.now_s - suit.counts.last_frame_s < kSilenceS;
+}
+
 std::string status_text(const Status& status) {
   return text_of({{"version", KINEMAP_VERSION},
                   {"uptime_s", rounded(status.uptime_s)},
@@ -175,7 +175,7 @@ std::string health_text(const Status& status) {
   const std::string transport = status.suit_config.transport == "tcp" ? "TCP " : "UDP ";
   const std::string where = transport + status.suit_config.address + ":" + std::to_string(status.suit_port);
   if (status.suit.news->refusal) return text_of({{"status", "refused"}, {"message", *status.suit.news->refusal}});
-  if (receiving(status.suit))
+  if (is_receiving(status.suit))
     return text_of({{"status", "ok"}, {"message", "receiving from " + status.suit.news->sender}});
   const bool ever = status.suit.counts.last_frame_s >= 0.0;
   const std::string message =

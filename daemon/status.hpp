@@ -35,6 +35,9 @@ struct Status {
   ApiCounts api;
 };
 
+/// Frames came within the last 2 s.
+bool is_receiving(const ReceiverState& suit);
+
 /// JSON of /api/v1/status; daemon/README.md explains each field.
 std::string status_text(const Status& status);
 

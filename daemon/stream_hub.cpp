@@ -10,80 +10,73 @@
 namespace kinemap {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestPeriod{50};  // how late a new map may come
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLongestPeriod{50};             // how late a new map or event may come
+constexpr milliseconds kShortestPeriod{2}, kEven{10};  // kEven: what a rate may be off its beat
 constexpr std::chrono::seconds kStatusPeriod{1};
 
 SharedText shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 }  // namespace
 
-std::chrono::milliseconds StreamHub::period() const {
-  const std::chrono::milliseconds pose(std::max<std::int64_t>(1, static_cast<std::int64_t>(1000.0 / pose_rate_hz_)));
-  return std::min(pose, kLongestPeriod);
+milliseconds StreamHub::period() const {
+  if (fastest_hz_ <= 0.0) return kLongestPeriod;
+  return std::clamp(milliseconds(static_cast<std::int64_t>(500.0 / fastest_hz_)), kShortestPeriod, kEven);
 }
 
 void StreamHub::tick(TimePoint now) {
+  now_ = now;
   std::vector<std::shared_ptr<Subscriber>> everyone;
   for (const auto& weak : subscribers_)
     if (auto subscriber = weak.lock()) everyone.push_back(std::move(subscriber));
   std::erase_if(subscribers_, [](const auto& weak) { return weak.expired(); });
-  for (std::size_t i = 0; i < kTopicCount; ++i)
-    wanted_[i] = std::any_of(everyone.begin(), everyone.end(),
-                             [i](const auto& subscriber) { return subscriber->wants(static_cast<Topic>(i)); });
-  update_map();
-  update_pose(now);
-  update_status(now);
+  api_.look(now);
   take_events();
-  for (const auto& subscriber : everyone) subscriber->offer(news_, now);
+  fastest_hz_ = 0.0;
+  for (const auto& subscriber : everyone) {
+    subscriber->offer(now);
+    fastest_hz_ = std::max(fastest_hz_, subscriber->rate_hz());
+  }
 }
 
-void StreamHub::update_map() {
-  if (!wanted(Topic::Map)) {
-    newest(Topic::Map).reset();
-    map_of_news_.reset();
-    return;
+SharedText StreamHub::map_message(const std::optional<KnownMap>& known) {
+  const SharedText text = known ? api_.history().since(*known) : api_.history().whole();
+  auto& [message, of] = known ? delta_map_ : whole_map_;
+  if (text != of) {
+    message = shared(news_text(Topic::Map, *text));
+    of = text;
   }
-  const auto text = api_.map_text();
-  if (text == map_of_news_) return;
-  map_of_news_ = text;
-  newest(Topic::Map) = shared(news_text(Topic::Map, *text));
+  return message;
 }
 
-void StreamHub::update_pose(TimePoint now) {
-  if (!wanted(Topic::Pose)) {
-    newest(Topic::Pose).reset();
-    pose_time_s_ = -1.0;
-    return;
+SharedText StreamHub::newest(Topic topic) {
+  Made& made = made_[static_cast<std::size_t>(topic)];
+  if (topic == Topic::Pose) make_pose(made, query_pose, topic);
+  if (topic == Topic::Body) make_pose(made, query_body, topic);
+  if (topic == Topic::Status && now_ >= status_due_) {
+    made.text = shared(news_text(topic, api_.status_text()));
+    status_due_ = now_ + kStatusPeriod;
   }
-  if (now < pose_due_) return;
+  return made.text;
+}
+
+void StreamHub::make_pose(Made& made, Answer (*query)(const MapSnapshot&, const LiveBody&, double), Topic topic) {
   const LiveBody body = api_.sources().body();
   const auto map = api_.sources().map();
   // A new map corrects the pose even of a wearer whose suit is silent.
-  if (!body.known || (body.time_s == pose_time_s_ && map->revision == pose_revision_)) return;
-  const Answer answer = query_pose(*map, body);
-  newest(Topic::Pose) = shared(news_text(Topic::Pose, std::get<std::string>(answer)));
-  pose_time_s_ = body.time_s;
-  pose_revision_ = map->revision;
-  const auto step = std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(1.0 / pose_rate_hz_));
-  // On the grid of the rate, so that late ticks do not lower it; from now on after a pause.
-  pose_due_ = std::max(pose_due_ + step, now - step);
-}
-
-void StreamHub::update_status(TimePoint now) {
-  if (!wanted(Topic::Status)) {
-    newest(Topic::Status).reset();
-    status_due_ = {};
-    return;
-  }
-  if (now < status_due_) return;
-  newest(Topic::Status) = shared(news_text(Topic::Status, api_.status_text()));
-  status_due_ = now + kStatusPeriod;
+  if (!body.known || (body.time_s == made.time_s && map->revision == made.revision)) return;
+  const Answer answer = query(*map, body, std::chrono::duration<double>(now_.time_since_epoch()).count());
+  made = {shared(news_text(topic, std::get<std::string>(answer))), body.time_s, map->revision};
 }
 
 void StreamHub::take_events() {
-  news_.events.clear();
-  while (const auto notice = api_.sources().take_notice())
-    news_.events.push_back(shared(news_text(Topic::Events, notice_text(*notice))));
+  new_events_.clear();
+  const auto& events = api_.events().all();
+  const auto fresh = std::min<std::uint64_t>(api_.events().newest() - events_seen_, events.size());
+  for (auto it = events.end() - static_cast<std::ptrdiff_t>(fresh); it != events.end(); ++it)
+    new_events_.push_back(shared(news_text(Topic::Events, *it->data)));
+  events_seen_ = api_.events().newest();
 }
 
 }  // namespace kinemap

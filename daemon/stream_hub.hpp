@@ -3,7 +3,9 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "daemon/api.hpp"
@@ -11,55 +13,65 @@
 
 namespace kinemap {
 
-/// What all subscribers are told, each text made once for all of them.
-struct News {
-  /// The newest message of each topic with a state (map, pose, status); null: none, or nobody asked.
-  std::array<SharedText, kTopicCount> newest;
-  /// What happened since the last time (topic events).
-  std::vector<SharedText> events;
-};
-
 /// A client of the stream, as the hub sees it.
 class Subscriber {
  public:
   virtual ~Subscriber() = default;
-  [[nodiscard]] virtual bool wants(Topic topic) const = 0;
-  virtual void offer(const News& news, std::chrono::steady_clock::time_point now) = 0;
+  /// The fastest rate at which it wants anything, Hz; 0: as it comes.
+  [[nodiscard]] virtual double rate_hz() const = 0;
+  /// There may be news, which the hub has.
+  virtual void offer(std::chrono::steady_clock::time_point now) = 0;
 };
 
-/// Knows the subscribers, makes the news and hands them round; the server's thread only.
+/// Knows the subscribers, calls them up when there may be news, and makes each text once for all of them; the server's
+/// thread only.
 class StreamHub {
  public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
   StreamHub(Api& api, double pose_rate_hz) : api_(api), pose_rate_hz_(pose_rate_hz) {}
 
   /// Forgets it when it is destroyed.
   void join(const std::shared_ptr<Subscriber>& subscriber) { subscribers_.push_back(subscriber); }
+  /// Of clients that do not choose one.
   void set_pose_rate(double hz) { pose_rate_hz_ = hz; }
+  [[nodiscard]] double pose_rate_hz() const { return pose_rate_hz_; }
 
-  /// To be called often: makes what is due and offers it.
-  void tick(std::chrono::steady_clock::time_point now);
+  /// To be called every `period()`: looks at what has changed and calls the subscribers up.
+  void tick(TimePoint now);
   /// Time between two ticks that the rates ask for.
   [[nodiscard]] std::chrono::milliseconds period() const;
 
- private:
-  using TimePoint = std::chrono::steady_clock::time_point;
+  /// The newest message of a topic with a state (pose, body, status); null: nothing is known yet. The same text as
+  /// before as long as nothing has changed.
+  SharedText newest(Topic topic);
+  /// The map: whole, or what changed since the one that the client has.
+  SharedText map_message(const std::optional<KnownMap>& known);
+  /// What happened since the tick before (topic events).
+  [[nodiscard]] const std::vector<SharedText>& new_events() const { return new_events_; }
 
-  [[nodiscard]] bool wanted(Topic topic) const { return wanted_[static_cast<std::size_t>(topic)]; }
-  void update_map();
-  void update_pose(TimePoint now);
-  void update_status(TimePoint now);
+ private:
+  struct Made {
+    SharedText text;
+    double time_s = -1.0;        ///< of the frame in it
+    std::uint64_t revision = 0;  ///< of the map that corrects it
+  };
+
+  void make_pose(Made& made, Answer (*query)(const MapSnapshot&, const LiveBody&, double), Topic topic);
   void take_events();
-  SharedText& newest(Topic topic) { return news_.newest[static_cast<std::size_t>(topic)]; }
 
   Api& api_;
   double pose_rate_hz_;
+  double fastest_hz_ = 0.0;
   std::vector<std::weak_ptr<Subscriber>> subscribers_;
-  std::array<bool, kTopicCount> wanted_{};  // by anyone, in this tick
-  News news_;
-  SharedText map_of_news_;  // the map's text that the news of the topic map wrap
-  double pose_time_s_ = -1.0;
-  std::uint64_t pose_revision_ = 0;
-  TimePoint pose_due_{}, status_due_{};
+  TimePoint now_{}, status_due_{};
+  std::array<Made, kTopicCount> made_;
+  struct Wrapped {
+    SharedText message, of;
+  };
+  Wrapped whole_map_, delta_map_;  // the ones asked for last
+  std::uint64_t events_seen_ = 0;
+  std::vector<SharedText> new_events_;
 };
 
 }  // namespace kinemap

@@ -2,7 +2,6 @@
 #include "daemon/stream_protocol.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -11,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<Topic> kAllTopics{Topic::Map, Topic::Pose, Topic::Status, Topic::Events};
+const std::vector<Topic> kAllTopics{Topic::Map, Topic::Pose, Topic::Body, Topic::Status, Topic::Events};
 
 BadMessage bad(const std::string& message, const std::string& id = {}) { return {id, {400, "bad_message", message}}; }
 
@@ -59,7 +58,7 @@ ClientMessage query_of(const Json& message) {
   if (id.size() > 200) return bad("the query's id is longer than 200 bytes");
   const auto path = message.find("path");
   if (path == message.end() || !path->is_string())
-    return bad("a query needs a \"path\": map, objects, objects/ID, trajectory, pose or status", id);
+    return bad("a query needs a \"path\", such as map, objects or objects/7; openapi.json has all", id);
   StreamQuery query{std::move(id), path->get<std::string>(), {}};
   const auto params = message.find("params");
   if (params == message.end()) return query;
@@ -73,7 +72,29 @@ ClientMessage query_of(const Json& message) {
   return query;
 }
 
-double rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
+std::string shown(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 40);
+}
+
+ClientMessage subscribe_of(const Json& message, std::vector<Topic> topics) {
+  Subscribe subscribe{std::move(topics), {}, {}};
+  if (const auto rate = message.find("rate_hz"); rate != message.end()) {
+    subscribe.rate_hz = rate->is_number() ? rate->get<double>() : 0.0;
+    if (!(*subscribe.rate_hz >= kSlowestHz && *subscribe.rate_hz <= kFastestHz))
+      return bad("\"rate_hz\" must be a number from 0.1 to 240, not " + shown(*rate));
+  }
+  const auto since = message.find("since"), run = message.find("run");
+  if (since != message.end()) {
+    if (!since->is_number_unsigned())
+      return bad("\"since\" must be the revision of the map that you have, not " + shown(*since));
+    subscribe.known = KnownMap{since->get<std::uint64_t>(), ""};
+  }
+  if (run != message.end()) {
+    if (!run->is_string() || !subscribe.known) return bad("\"run\" must be the map's run, a string, beside \"since\"");
+    subscribe.known->run = run->get<std::string>();
+  }
+  return subscribe;
+}
 
 }  // namespace
 
@@ -82,10 +103,10 @@ ClientMessage parse_client_message(std::string_view text) {
   if (message.is_discarded() || !message.is_object()) return bad("a message is a JSON object with \"op\"");
   const auto op_it = message.find("op");
   const std::string op = op_it != message.end() && op_it->is_string() ? op_it->get<std::string>() : std::string();
-  constexpr const char* kTopics = "\"topics\" must be a list of: map, pose, status, events";
+  constexpr const char* kTopics = "\"topics\" must be a list of: map, pose, body, status, events";
   if (op == "subscribe") {
     auto topics = topics_of(message, false);
-    return topics ? ClientMessage(Subscribe{std::move(*topics)}) : bad(kTopics);
+    return topics ? subscribe_of(message, std::move(*topics)) : bad(kTopics);
   }
   if (op == "unsubscribe") {
     auto topics = topics_of(message, true);
@@ -95,10 +116,12 @@ ClientMessage parse_client_message(std::string_view text) {
   return bad("\"op\" must be subscribe, unsubscribe or query");
 }
 
-std::string subscribed_text(const std::vector<Topic>& topics) {
-  Json names = Json::array();
-  for (const Topic topic : topics) names.push_back(kTopicNames[static_cast<std::size_t>(topic)]);
-  return Json{{"op", "subscribed"}, {"topics", std::move(names)}}.dump();
+std::string subscribed_text(const std::vector<Topic>& topics, const std::vector<std::pair<Topic, double>>& rates_hz) {
+  const auto name = [](Topic topic) { return kTopicNames[static_cast<std::size_t>(topic)]; };
+  Json names = Json::array(), rates = Json::object();
+  for (const Topic topic : topics) names.push_back(name(topic));
+  for (const auto& [topic, hz] : rates_hz) rates[name(topic)] = hz;
+  return Json{{"op", "subscribed"}, {"topics", std::move(names)}, {"rate_hz", std::move(rates)}}.dump();
 }
 
 std::string result_text(const std::string& id, const std::string& data) {
@@ -113,17 +136,6 @@ std::string stream_error_text(const std::string& id, const std::string& error) {
 std::string news_text(Topic topic, const std::string& data) {
   return std::string(R"({"op":"message","topic":")") + kTopicNames[static_cast<std::size_t>(topic)] + R"(","data":)" +
          data + "}";
-}
-
-std::string notice_text(const Notice& notice) {
-  const bool trace = notice.kind == Notice::Kind::Trace;
-  Json json = {
-      {"event", trace ? "trace" : "sitting"}, {"begin", rounded(notice.begin_s)}, {"end", rounded(notice.end_s)}};
-  if (trace)
-    json["contacts"] = notice.contacts;
-  else
-    json["seat_height"] = rounded(notice.seat_height_m);
-  return json.dump();
 }
 
 }  // namespace kinemap

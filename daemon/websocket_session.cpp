@@ -41,7 +41,7 @@ void WebSocketSession::accept(http::request<http::string_body> request, const st
 
 void WebSocketSession::read() {
   stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
-    if (error) return self->end();
+    if (error || self->ended_) return self->end();
     const auto data = self->buffer_.data();
     self->on_message({static_cast<const char*>(data.data()), data.size()}, self->stream_.got_text());
     self->buffer_.consume(self->buffer_.size());
@@ -61,20 +61,30 @@ void WebSocketSession::write() {
   stream_.async_write(buffers, [self = shared_from_this(), message](ErrorCode error, std::size_t) {
     self->writing_ = false;
     if (error) return self->end();
+    if (self->ended_) return self->say_goodbye();
     self->write();
   });
 }
 
 void WebSocketSession::check_stall(Clock::time_point now) {
-  if (writing_ && now > write_deadline_) give_up();
-}
-
-void WebSocketSession::give_up() {
-  if (ended_) return;
-  ++context_.api.counts().slow_clients_closed;
+  if (!writing_ || now <= write_deadline_) return;
+  give_up("");
   ErrorCode ignored;
   beast::get_lowest_layer(stream_).socket().close(ignored);
+}
+
+void WebSocketSession::give_up(const std::string& reason) {
+  if (ended_) return;
+  ++context_.api.counts().slow_clients_closed;
+  goodbye_ = reason;
   end();
+  if (!writing_) say_goodbye();
+}
+
+void WebSocketSession::say_goodbye() {
+  if (goodbye_.empty()) return;
+  const websocket::close_reason reason(websocket::close_code::policy_error, std::exchange(goodbye_, ""));
+  stream_.async_close(reason, [self = shared_from_this()](ErrorCode) {});
 }
 
 void WebSocketSession::end() {

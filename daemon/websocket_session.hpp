@@ -48,21 +48,23 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void write();
   /// Gives up when the client has not taken the message that is being sent in time.
   void check_stall(Clock::time_point now);
-  /// The client is too slow. A closing handshake would wait behind what it does not read, so the connection is just
-  /// ended.
-  void give_up();
+  /// The client is too slow: it is told why and disconnected. The closing frame cannot overtake the message that is
+  /// being sent; when that one is not taken in time either, the connection is just ended.
+  void give_up(const std::string& reason);
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] WebContext& context() const { return context_; }
 
  private:
   void read();
   void end();
+  void say_goodbye();
 
   beast::websocket::stream<beast::tcp_stream> stream_;
   WebContext& context_;
   ConnectionSlot slot_;
   http::request<http::string_body> request_;
   beast::flat_buffer buffer_;
+  std::string goodbye_;  // why the client was given up on
   bool writing_ = false;
   bool ended_ = false;
   Clock::time_point write_deadline_;

@@ -123,7 +123,10 @@ json StreamClient::receive() {
   beast::flat_buffer buffer;
   ErrorCode error;
   impl_->stream.read(buffer, error);
-  if (error) return {{"closed", impl_->stream.reason().code}, {"why", error.message()}};
+  if (error)
+    return {{"closed", impl_->stream.reason().code},
+            {"reason", std::string(impl_->stream.reason().reason.c_str())},
+            {"why", error.message()}};
   return json::parse(beast::buffers_to_string(buffer.data()));
 }
 

@@ -165,11 +165,22 @@ TEST(QueryTrajectory, SinceAndUntilAreInclusive) {
 }
 
 TEST(QueryPose, IsTheOdometryCorrectedByTheMap) {
-  EXPECT_EQ(error_of(query_pose(sample_map(), {})).status, 503U);
-  const auto json = value_of(query_pose(sample_map(), test::body_at(3.5, {0.5, 0.25, 1.0})));
+  EXPECT_EQ(error_of(query_pose(sample_map(), {}, 0.0)).status, 503U);
+  const auto json = value_of(query_pose(sample_map(), test::body_at(3.5, {0.5, 0.25, 1.0}), 0.75));
+  EXPECT_EQ(json["age"], 0.75);
   EXPECT_EQ(json["position"], (Json{1.5, 2.25, 1.0}));
   EXPECT_EQ(json["odometry"]["position"], (Json{0.5, 0.25, 1.0}));
   EXPECT_EQ(json["time"], 3.5);
+}
+
+TEST(QueryBody, HasEverySegmentInTheMapFrame) {
+  EXPECT_EQ(error_of(query_body(sample_map(), {}, 0.0)).status, 503U);
+  SuitFrame frame;
+  for (std::size_t i = 0; i < kSegmentCount; ++i) frame.segments[i].p = {0.1 * static_cast<double>(i), 0, 1};
+  const auto json = value_of(query_body(sample_map(), live_body_of(frame, 0.0), 0.0));
+  ASSERT_EQ(json["segments"].size(), kSegmentCount);
+  EXPECT_EQ(json["segments"][10], (Json{2.0, 2.0, 1.0, 1.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(json["correction"]["position"], (Json{1.0, 2.0, 0.0}));
 }
 
 TEST(LevelDistance, IsZeroOverATableAndReachesAWallsNearestPoint) {

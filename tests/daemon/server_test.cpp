@@ -38,7 +38,7 @@ class ServerTest : public testing::Test {
   }
 
   /// Publishes a map with so many chairs.
-  void set_map(std::uint64_t revision, std::uint32_t chairs) {
+  void set_map(std::uint64_t revision, std::uint32_t chairs, double y = 0.0) {
     auto map = std::make_shared<MapSnapshot>();
     map->revision = revision;
     for (std::uint32_t id = 1; id <= chairs; ++id) {
@@ -46,7 +46,7 @@ class ServerTest : public testing::Test {
       chair.id = id;
       chair.type = ObjectType::Chair;
       chair.functions = {"sit"};
-      chair.pose = level_pose({static_cast<double>(id), 0, 0.45}, 0);
+      chair.pose = level_pose({static_cast<double>(id), y, 0.45}, 0);
       map->objects.push_back(chair);
     }
     map_.set(std::move(map));
@@ -220,7 +220,9 @@ TEST_F(ServerTest, AStreamPushesMapsPosesStatusAndEvents) {
   EXPECT_EQ(client.receive({{"topic", "map"}})["data"]["revision"], 1);
   EXPECT_TRUE(client.receive({{"topic", "status"}})["data"].contains("rings"));
   set_map(2, 3);
-  EXPECT_EQ(client.receive({{"topic", "map"}})["data"]["objects"].size(), 3U);
+  const auto delta = client.receive({{"topic", "map"}})["data"];
+  EXPECT_EQ(delta["since"], 1);
+  EXPECT_EQ(delta["objects"].size(), 2U);  // the two that are new
   body_.set(test::body_at(1.0, {4, 5, 6}));
   EXPECT_EQ(client.receive({{"topic", "pose"}})["data"]["position"], (Json{4, 5, 6}));
   body_.set(test::body_at(1.1, {5, 5, 6}));
@@ -229,7 +231,68 @@ TEST_F(ServerTest, AStreamPushesMapsPosesStatusAndEvents) {
     const std::lock_guard lock(mutex_);
     notices_.push_back({Notice::Kind::Trace, 1.0, 2.0, 17, 0.0});
   }
-  EXPECT_EQ(client.receive({{"topic", "events"}})["data"]["contacts"], 17);
+  Json event;
+  do event = client.receive({{"topic", "events"}})["data"];
+  while (event["event"] != "trace");
+  EXPECT_EQ(event["contacts"], 17);
+}
+
+TEST_F(ServerTest, AClientThatHasAMapGetsOnlyWhatIsNew) {
+  start();
+  set_map(1, 3);
+  HttpClient http(port_);
+  const auto whole = http.get("/api/v1/map").json();
+  const std::string run = whole["run"];
+  set_map(2, 4);
+  const auto delta = http.get("/api/v1/map?since=1&run=" + run).json();
+  EXPECT_EQ(delta["since"], 1);
+  EXPECT_EQ(delta["objects"].size(), 1U);
+  const auto other = http.get("/api/v1/map?since=1&run=0").json();
+  EXPECT_FALSE(other.contains("since"));
+  EXPECT_THAT(other["note"].get<std::string>(), HasSubstr("another run"));
+  EXPECT_EQ(http.get("/api/v1/map?run=0").json()["error"]["parameter"], "run");
+  StreamClient stream(port_);
+  stream.send(Json{{"op", "subscribe"}, {"topics", {"map"}}, {"since", 1}, {"run", run}}.dump());
+  const auto message = stream.receive({{"topic", "map"}})["data"];
+  EXPECT_EQ(message, delta);
+  set_map(3, 2);
+  EXPECT_EQ(stream.receive({{"topic", "map"}})["data"]["removed"]["objects"], (Json{3, 4}));
+}
+
+TEST_F(ServerTest, PosesAndBodiesComeAtTheChosenRate) {
+  start();
+  StreamClient client(port_);
+  client.send(R"({"op":"subscribe","topics":["pose","body"],"rate_hz":100})");
+  EXPECT_EQ(client.receive()["rate_hz"], (Json{{"pose", 100}, {"body", 100}}));
+  body_.set(test::body_at(1.0, {4, 5, 6}));
+  EXPECT_EQ(client.receive({{"topic", "body"}})["data"]["segments"][0], (Json{4, 5, 6, 1, 0, 0, 0}));
+  client.send(R"({"op":"subscribe","topics":["pose"],"rate_hz":0.1})");
+  EXPECT_EQ(client.receive({{"op", "subscribed"}})["rate_hz"], (Json{{"pose", 0.1}, {"body", 100}}));
+  // Of a hundred frames within less than ten seconds all bodies come, but at most the pose that was due.
+  int poses = 0;
+  for (int i = 1; i <= 100; ++i) {
+    body_.set(test::body_at(1.0 + i, {4, 5, 6}));
+    Json message;
+    do poses += (message = client.receive())["topic"] == "pose";
+    while (message["topic"] != "body" || message["data"]["time"] != 1.0 + i);
+  }
+  EXPECT_LE(poses, 2);
+}
+
+TEST_F(ServerTest, EventsAreToldAndKept) {
+  start();
+  StreamClient client(port_);
+  client.send(R"({"op":"subscribe","topics":["events"]})");
+  client.receive();
+  set_map(1, 2);
+  EXPECT_EQ(client.receive()["data"]["message"], "chair 1 found");
+  EXPECT_EQ(client.receive()["data"]["object"], 2);
+  set_map(2, 1);
+  EXPECT_EQ(client.receive()["data"]["event"], "object_removed");
+  HttpClient http(port_);
+  EXPECT_EQ(http.get("/api/v1/events").json()["events"].size(), 3U);
+  EXPECT_EQ(http.get("/api/v1/events?limit=1").json()["events"][0]["message"], "chair 2 removed");
+  EXPECT_EQ(http.get("/api/v1/events?since=3").json(), (Json{{"newest", 3}, {"events", Json::array()}}));
 }
 
 TEST_F(ServerTest, ALateSubscriberGetsTheStateAtOnce) {
@@ -252,11 +315,7 @@ TEST_F(ServerTest, UnsubscribedTopicsAreNotPushed) {
   client.send(R"({"op":"unsubscribe","topics":["map"]})");
   EXPECT_EQ(client.receive({{"op", "subscribed"}})["topics"], (Json{"events"}));
   set_map(2, 1);
-  {
-    const std::lock_guard lock(mutex_);
-    notices_.push_back({Notice::Kind::Sitting, 1.0, 2.0, 0, 0.45});
-  }
-  EXPECT_EQ(client.receive()["topic"], "events");  // the map of the same tick would have been before or with it
+  EXPECT_EQ(client.receive()["data"]["event"], "object_found");  // the map would have been with it
   client.send(R"({"op":"unsubscribe"})");
   EXPECT_EQ(client.receive()["topics"], Json::array());
 }
@@ -309,13 +368,20 @@ TEST_F(ServerTest, AnOversizedMessageClosesTheStream) {
 TEST_F(ServerTest, AClientThatAsksWithoutReadingIsDisconnected) {
   Config::Api config;
   config.client_buffer_bytes = 65536;
-  start(config);
+  start(config, {std::chrono::milliseconds(2000)});
   set_map(1, 2000);  // half a megabyte of JSON
-  StreamClient flooder(port_, 4096), other(port_);
+  StreamClient flooder(port_, 4096), late_reader(port_, 4096), other(port_);
   for (int i = 0; i < 50 && flooder.try_send(R"({"op":"query","id":1,"path":"map"})"); ++i) {
   }
   EXPECT_TRUE(eventually([&] { return status()["clients"]["slow_clients_closed"] == 1; }));
-  EXPECT_TRUE(eventually([&] { return status()["clients"]["streams"] == 1; }));
+  EXPECT_TRUE(eventually([&] { return status()["clients"]["streams"] == 2; }));
+  // One that reads after all gets the message that was under way, and then is told why it is closed.
+  for (int i = 0; i < 50 && late_reader.try_send(R"({"op":"query","id":1,"path":"map"})"); ++i) {
+  }
+  EXPECT_TRUE(eventually([&] { return status()["clients"]["slow_clients_closed"] == 2; }));
+  const auto goodbye = late_reader.receive({{"closed", 1008}});
+  EXPECT_EQ(goodbye["closed"], 1008);
+  EXPECT_THAT(goodbye["reason"].get<std::string>(), HasSubstr("slow reader"));
   other.send(R"({"op":"query","id":2,"path":"map"})");
   EXPECT_EQ(other.receive()["id"], 2);
 }
@@ -329,7 +395,9 @@ TEST_F(ServerTest, AStoppedReaderSkipsToTheNewestAndIsThenDisconnected) {
   // The other client gets every map meanwhile.
   std::uint64_t revision = 0;
   const auto next_map_arrives = [&] {
-    set_map(++revision, 1000);  // a quarter of a megabyte of JSON: a few fill the kernel's buffers
+    ++revision;
+    // All objects move: a quarter of a megabyte of JSON, of which a few fill the kernel's buffers.
+    set_map(revision, 1000, static_cast<double>(revision));
     Json message;
     do message = reader.receive({{"topic", "map"}});
     while (!message.contains("closed") && message["data"]["revision"] != revision);

@@ -24,7 +24,7 @@ TEST(Outbox, AnswersComeFirstAndInTheirOrder) {
   EXPECT_TRUE(box.add_answer(text(1, '1')));
   EXPECT_TRUE(box.add_answer(text(1, '2')));
   std::string order;
-  while (const auto next = box.next()) order += *next;
+  while (const auto next = box.next().text) order += *next;
   EXPECT_EQ(order, "12emp");
   EXPECT_EQ(box.bytes(), 0U);
 }
@@ -34,22 +34,22 @@ TEST(Outbox, NewerNewsReplaceOlderOnes) {
   EXPECT_EQ(box.add_news(Topic::Map, text(10, 'a')).skipped, 0U);
   EXPECT_EQ(box.add_news(Topic::Map, text(20, 'b')).skipped, 1U);
   EXPECT_EQ(box.bytes(), 20U);
-  EXPECT_EQ(box.next()->front(), 'b');
-  EXPECT_EQ(box.next(), nullptr);
+  EXPECT_EQ(box.next().text->front(), 'b');
+  EXPECT_EQ(box.next().text, nullptr);
 }
 
 TEST(Outbox, OldestEventsGiveWay) {
   Outbox box(100);
   for (const char c : {'a', 'b', 'c'}) EXPECT_TRUE(box.add_news(Topic::Events, text(40, c)).added);
   EXPECT_EQ(box.bytes(), 80U);
-  EXPECT_EQ(box.next()->front(), 'b');
+  EXPECT_EQ(box.next().text->front(), 'b');
 }
 
 TEST(Outbox, NewsBeyondTheBudgetWaitButAnythingFitsIntoAnEmptyBox) {
   Outbox box(100);
   EXPECT_TRUE(box.add_news(Topic::Map, text(500)).added);
   EXPECT_FALSE(box.add_news(Topic::Pose, text(1)).added);
-  EXPECT_EQ(box.next()->size(), 500U);
+  EXPECT_EQ(box.next().text->size(), 500U);
   EXPECT_TRUE(box.add_news(Topic::Pose, text(1)).added);
 }
 
@@ -66,7 +66,7 @@ TEST(Outbox, ForgetsATopic) {
   box.forget(Topic::Events);
   box.forget(Topic::Status);
   EXPECT_EQ(box.bytes(), 0U);
-  EXPECT_EQ(box.next(), nullptr);
+  EXPECT_EQ(box.next().text, nullptr);
 }
 
 template <class T>
@@ -81,6 +81,24 @@ TEST(StreamProtocol, SubscribeAndUnsubscribe) {
             (std::vector{Topic::Pose, Topic::Map}));
   EXPECT_EQ(parsed<Unsubscribe>(R"({"op":"unsubscribe","topics":["events"]})").topics, (std::vector{Topic::Events}));
   EXPECT_EQ(parsed<Unsubscribe>(R"({"op":"unsubscribe"})").topics.size(), kTopicCount);
+}
+
+TEST(StreamProtocol, ASubscriberChoosesItsRateAndSaysWhichMapItHas) {
+  const auto plain = parsed<Subscribe>(R"({"op":"subscribe","topics":["pose"]})");
+  EXPECT_FALSE(plain.rate_hz || plain.known);
+  const auto full = parsed<Subscribe>(R"({"op":"subscribe","topics":["map"],"rate_hz":2.5,"since":42,"run":"ab"})");
+  EXPECT_EQ(full.rate_hz, 2.5);
+  EXPECT_EQ(full.known->revision, 42U);
+  EXPECT_EQ(full.known->run, "ab");
+  const auto message = [](const std::string& more) {
+    return parsed<BadMessage>(R"({"op":"subscribe","topics":["map"],)" + more + "}").error.message;
+  };
+  for (const char* more : {R"("rate_hz":0)", R"("rate_hz":1000)", R"("rate_hz":"10")", R"("rate_hz":null)"})
+    EXPECT_THAT(message(more), HasSubstr("number from 0.1 to 240, not ")) << more;
+  for (const char* more : {R"("since":-1)", R"("since":1.5)", R"("since":"a")"})
+    EXPECT_THAT(message(more), HasSubstr("revision of the map that you have")) << more;
+  for (const char* more : {R"("run":"a")", R"("since":1,"run":2)"})
+    EXPECT_THAT(message(more), HasSubstr("\"run\" must be")) << more;
 }
 
 TEST(StreamProtocol, QueryParametersAreAsInAUrl) {
@@ -101,7 +119,7 @@ TEST(StreamProtocol, BadMessagesSayWhatIsAllowed) {
   for (const char* json :
        {R"({"op":"subscribe"})", R"({"op":"subscribe","topics":"map"})", R"({"op":"subscribe","topics":[1]})",
         R"({"op":"subscribe","topics":["mop"]})", R"({"op":"unsubscribe","topics":{}})"})
-    EXPECT_THAT(message(json), HasSubstr("map, pose, status, events"));
+    EXPECT_THAT(message(json), HasSubstr("map, pose, body, status, events"));
   for (const char* json : {R"({"op":"query","path":"map"})", R"({"op":"query","id":null,"path":"map"})"})
     EXPECT_THAT(message(json), HasSubstr("needs an \"id\""));
   EXPECT_THAT(message(R"({"op":"query","id":1})"), HasSubstr("needs a \"path\""));
@@ -121,11 +139,8 @@ TEST(StreamProtocol, AnswersAreJson) {
             Json::parse(R"({"op":"error","id":"x","error":{"code":"not_found","message":"no"}})"));
   EXPECT_FALSE(Json::parse(stream_error_text("", error_text({400, "bad", "no"}))).contains("id"));
   EXPECT_EQ(Json::parse(news_text(Topic::Map, "[]")), Json::parse(R"({"op":"message","topic":"map","data":[]})"));
-  EXPECT_EQ(Json::parse(subscribed_text({Topic::Events})), Json::parse(R"({"op":"subscribed","topics":["events"]})"));
-  const auto trace = Json::parse(notice_text({Notice::Kind::Trace, 1.0, 2.0, 17, 0.0}));
-  EXPECT_EQ(trace["event"], "trace");
-  EXPECT_EQ(trace["contacts"], 17);
-  EXPECT_EQ(Json::parse(notice_text({Notice::Kind::Sitting, 1.0, 2.0, 0, 0.45}))["seat_height"], 0.45);
+  EXPECT_EQ(Json::parse(subscribed_text({Topic::Events, Topic::Pose}, {{Topic::Pose, 10.0}})),
+            Json::parse(R"({"op":"subscribed","topics":["events","pose"],"rate_hz":{"pose":10.0}})"));
 }
 
 TEST(WebPolicy, ALoopbackServerAnswersToLoopbackNamesOnly) {

@@ -217,7 +217,13 @@ TEST(News, TellsWhatIsNewChangedAndGone) {
   map.objects[0].pose.p.x() += 0.01;  // too little to tell
   map.objects[1].pose.p.x() += 0.10;
   map.objects.pop_back();
-  const std::string second = news.lines(map_message(map));
+  // What is gone and what has changed, as a delta has it.
+  nlohmann::ordered_json delta = to_json(map);
+  delta.erase("unresolved");
+  delta["run"] = "";
+  delta["since"] = 42;
+  delta["removed"] = {{"objects", {7}}, {"rooms", nlohmann::ordered_json::array()}};
+  const std::string second = news.lines(R"({"op":"message","topic":"map","data":)" + delta.dump() + "}");
   EXPECT_NE(second.find("~ table 2"), std::string::npos) << second;
   EXPECT_NE(second.find("(by 0.10 m)"), std::string::npos) << second;
   EXPECT_NE(second.find("- chair 7"), std::string::npos) << second;
@@ -230,6 +236,10 @@ TEST(News, EventsAndRubbish) {
       news.lines(
           R"({"op":"message","topic":"events","data":{"event":"sitting","begin":1,"end":4.5,"seat_height":0.45}})"),
       "1.0–4.5 s  sat down, seat 0.45 m high\n");
+  EXPECT_EQ(
+      news.lines(
+          R"({"op":"message","topic":"events","data":{"event":"loop_closed","time":7.5,"message":"loop closed: 3"}})"),
+      "7.5 s  loop closed: 3\n");
   EXPECT_EQ(news.lines(R"({"op":"error","error":{"code":"bad_message","message":"no"}})"), "error: no\n");
   EXPECT_EQ(news.lines(R"({"op":"subscribed","topics":[]})"), "");
   for (const char* rubbish :

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/kinemap/news.hpp"
 
-#include <nlohmann/json.hpp>
-
+#include "protocol/map_delta.hpp"
 #include "protocol/map_json.hpp"
 #include "tools/kinemap/text_table.hpp"
 
@@ -35,7 +34,7 @@ std::string event_line(const Json& data) {
   const std::string kind = data.value("event", "");
   if (kind == "trace") return when + format("trace, %.0f contacts\n", number(data, "contacts"));
   if (kind == "sitting") return when + format("sat down, seat %.2f m high\n", number(data, "seat_height"));
-  return when + kind + '\n';
+  return format("%.1f s  ", number(data, "time")) + data.value("message", kind) + '\n';
 }
 
 std::string pose_line(const Json& data) {
@@ -84,7 +83,8 @@ std::string News::lines(const std::string& message) {
     if (topic == "pose") return pose_line(data);
     if (topic == "status") return status_line(data);
     if (topic != "map") return "";
-    const auto map = map_from_text(data.dump());
+    if (const auto error = apply_map_message(data, map_)) return "map: " + error->message + '\n';
+    const auto map = map_from_text(map_.dump());
     return map ? map_lines(*map) : "map: " + map.error() + '\n';
   } catch (const Json::exception& error) {
     return std::string("a message that cannot be read: ") + error.what() + '\n';

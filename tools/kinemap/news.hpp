@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/map.hpp"
@@ -17,6 +18,7 @@ class News {
  private:
   std::string map_lines(const MapSnapshot& map);
 
+  nlohmann::ordered_json map_;  ///< as the messages up to now have it
   std::map<std::uint32_t, MapObject> known_;
 };
 

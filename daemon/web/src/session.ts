@@ -13,7 +13,7 @@ const kTrackPauseMs = 2000; // how often the trajectory is asked for at most
 interface MapDelta extends Partial<MapDocument> {
   revision: number;
   since: number;
-  removed?: number[];
+  removed: { objects: number[]; rooms: number[] };
 }
 interface BodyNews {
   time: number;
@@ -28,10 +28,19 @@ interface Message {
 /** The map with a delta applied; undefined when the delta is not for this map. */
 export function applyDelta(map: MapDocument, delta: MapDelta): MapDocument | undefined {
   if (delta.since !== map.revision) return undefined;
-  const objects = new Map(map.objects.map((object) => [object.id, object]));
-  for (const id of delta.removed ?? []) objects.delete(id);
-  for (const object of delta.objects ?? []) objects.set(object.id, object);
-  return { ...map, ...delta, objects: [...objects.values()].sort((a, b) => a.id - b.id) };
+  return {
+    ...map,
+    ...delta,
+    objects: merged(map.objects, delta.objects ?? [], delta.removed.objects),
+    rooms: merged(map.rooms, delta.rooms ?? [], delta.removed.rooms),
+  };
+}
+
+function merged<T extends { id: number }>(things: T[], changed: T[], removed: number[]): T[] {
+  const byId = new Map(things.map((thing) => [thing.id, thing]));
+  for (const id of removed) byId.delete(id);
+  for (const thing of changed) byId.set(thing.id, thing);
+  return [...byId.values()].sort((a, b) => a.id - b.id);
 }
 
 export class Session {

@@ -73,11 +73,25 @@ LoopCloser::Trial LoopCloser::attempt(const MapState& state, std::size_t newcome
   return trial;
 }
 
-bool LoopCloser::close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found) {
+bool LoopCloser::is_clear(const MapState& state, const graph::Marginals& marginals,
+                          const std::vector<Candidate>& found) const {
+  const auto is_rival = [&](const Candidate& c) {
+    return c.landmark != found[0].landmark && found[0].evidence - c.evidence <= config_.association.ambiguity;
+  };
+  if (std::none_of(found.begin(), found.end(), is_rival)) return true;
+  // Two that may be one and the same are no rivals: what is one with the first is one with both, or tells them apart.
+  const auto alike = candidates(state, found[0].landmark, marginals, config_.association);
+  return std::all_of(found.begin(), found.end(), [&](const Candidate& c) {
+    return !is_rival(c) || std::any_of(alike.begin(), alike.end(),
+                                       [&](const Candidate& other) { return other.landmark == c.landmark; });
+  });
+}
+
+bool LoopCloser::close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
+                       const std::vector<Candidate>& found) {
   const auto& config = config_.association;
   if (found.empty() || found.front().evidence < config.min_evidence) return false;
-  const bool clear = found.size() < 2 || found[0].evidence - found[1].evidence > config.ambiguity;
-  if (clear) {
+  if (is_clear(state, marginals, found)) {
     Trial trial = attempt(state, newcomer, found.front());
     if (trial.cost_increase <= config.max_cost_increase) {
       state = std::move(trial.state);
@@ -101,7 +115,7 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   settle(state, config_.solver.closure_iterations);  // candidates are judged at an optimum
   if (state.graph.landmarks[newcomer].kind == LandmarkKind::Wall) align(state);
   if (const auto marginals = graph::Marginals::compute(state.graph))
-    if (close(state, newcomer, candidates(state, newcomer, *marginals, config_.association))) return true;
+    if (close(state, newcomer, *marginals, candidates(state, newcomer, *marginals, config_.association))) return true;
   state.landmarks[newcomer].id = next_id_++;
   return false;
 }
@@ -133,7 +147,7 @@ bool LoopCloser::reconsider(MapState& state) {
     std::erase_if(found, [&](const Candidate& c) {
       return std::find(contradicted_.begin(), contradicted_.end(), ordered(k, c.landmark)) != contradicted_.end();
     });
-    if (found.empty() || !close(state, k, found)) continue;
+    if (found.empty() || !close(state, k, *marginals, found)) continue;
     any = true;
     marginals = graph::Marginals::compute(state.graph);
   }

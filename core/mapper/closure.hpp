@@ -48,8 +48,14 @@ class LoopCloser {
   /// Decides anew which walls keep to the building's direction; optimises when that changed.
   bool align(MapState& state) const;
 
-  /// Tries the newcomer's candidates, nearest first. True when one was accepted; `state` is optimised then.
-  bool close(MapState& state, std::size_t newcomer, const std::vector<Candidate>& found);
+  /// Whether the first candidate has so much more evidence than any other that is certainly another object.
+  [[nodiscard]] bool is_clear(const MapState& state, const graph::Marginals& marginals,
+                              const std::vector<Candidate>& found) const;
+
+  /// Tries the newcomer's best candidate, unless another is about as good. True when it was accepted; `state` is
+  /// optimised then.
+  bool close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
+             const std::vector<Candidate>& found);
 
   MapperConfig config_;
   std::vector<std::array<std::size_t, 2>>

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/journal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/crc.hpp>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+
+#include "protocol/journal_entries.hpp"
+
+namespace kinemap::journal {
+namespace {
+
+constexpr std::string_view kName = "kinemap-journal ";
+constexpr std::string_view kMarker = "\xA5kjr";
+constexpr std::size_t kHead = 12;                     // marker, length, checksum
+constexpr std::uint32_t kLongest = 64 * 1024 * 1024;  // a trace of an hour has a hundredth of that
+
+std::uint32_t checksum(std::string_view payload) {
+  boost::crc_32_type crc;
+  crc.process_bytes(payload.data(), payload.size());
+  return crc.checksum();
+}
+
+void put_u32(std::string& out, std::uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(value >> shift & 0xFF));
+}
+
+std::uint32_t get_u32(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return value;
+}
+
+/// The payload of the record that begins here; nullopt where none does.
+std::optional<std::string_view> payload_at(std::string_view bytes, std::size_t at) {
+  if (bytes.size() - at < kHead || bytes.substr(at, kMarker.size()) != kMarker) return std::nullopt;
+  const std::uint32_t length = get_u32(bytes, at + 4);
+  if (length > kLongest || bytes.size() - at - kHead < length) return std::nullopt;
+  const auto payload = bytes.substr(at + kHead, length);
+  if (checksum(payload) != get_u32(bytes, at + 8)) return std::nullopt;
+  return payload;
+}
+
+/// Where the next whole record begins; bytes.size() when there is none.
+std::size_t next_record(std::string_view bytes, std::size_t from) {
+  for (auto at = bytes.find(kMarker, from); at != std::string_view::npos; at = bytes.find(kMarker, at + 1))
+    if (payload_at(bytes, at)) return at;
+  return bytes.size();
+}
+
+/// The length of the header, or why this is none that can be read.
+Result<std::size_t> check_header(std::string_view bytes, const std::string& path) {
+  const auto end = bytes.substr(0, 40).find('\n');
+  int version = 0;
+  if (bytes.starts_with(kName) && end != std::string_view::npos)
+    std::from_chars(bytes.data() + kName.size(), bytes.data() + end, version);
+  if (version > kVersion)
+    return Error{path + ": a journal of format " + std::to_string(version) +
+                 ", of a newer version of Kinemap; this one reads up to format " + std::to_string(kVersion)};
+  if (version < 1) return Error{path + ": no journal of Kinemap; expected \"kinemap-journal 1\" in its first line"};
+  return end + 1;
+}
+
+}  // namespace
+
+Entry entry_of(const Event& event) {
+  return std::visit([](const auto& e) -> Entry { return e; }, event);
+}
+
+std::optional<Event> event_of(const Entry& entry) {
+  return std::visit(
+      [](const auto& e) -> std::optional<Event> {
+        if constexpr (std::is_constructible_v<Event, decltype(e)>) return Event(e);
+        return std::nullopt;
+      },
+      entry);
+}
+
+std::string header() { return std::string(kName) + std::to_string(kVersion) + "\n"; }
+
+std::string record(const Entry& entry) {
+  const std::string payload = encode(entry);
+  std::string out(kMarker);
+  put_u32(out, static_cast<std::uint32_t>(payload.size()));
+  put_u32(out, checksum(payload));
+  return out += payload;
+}
+
+Result<Contents> read(std::string_view bytes, const std::string& path) {
+  const auto head = check_header(bytes, path);
+  if (!head) return Error{head.error()};
+  Contents contents;
+  contents.sound_bytes = *head;
+  for (std::size_t at = *head; at < bytes.size();) {
+    const auto payload = payload_at(bytes, at);
+    auto entry = payload ? decode(*payload) : std::nullopt;
+    if (entry) {
+      contents.entries.push_back(std::move(*entry));
+      at += kHead + payload->size();
+      contents.sound_bytes = at;
+      continue;
+    }
+    const std::size_t next = next_record(bytes, at + 1);
+    if (next < bytes.size())
+      contents.damage.push_back({at, next - at});
+    else
+      contents.torn_bytes = bytes.size() - at;
+    at = next;
+  }
+  return contents;
+}
+
+Mended mend(std::vector<Entry>& entries) {
+  Mended report;
+  std::unordered_map<KeyPoseId, KeyPoseId> renamed;
+  KeyPoseId expected = 0;
+  std::vector<Entry> kept;
+  kept.reserve(entries.size());
+  for (auto& entry : entries) {
+    if (auto* key_pose = std::get_if<KeyPose>(&entry)) {
+      if (key_pose->id < expected) continue;  // written twice
+      report.key_poses_missing += key_pose->id - expected;
+      key_pose->discontinuity = key_pose->discontinuity || (key_pose->id > expected && !renamed.empty());
+      expected = key_pose->id + 1;
+      const auto id = static_cast<KeyPoseId>(renamed.size());
+      renamed.emplace(key_pose->id, id);
+      key_pose->id = id;
+    } else if (auto* trace = std::get_if<Trace>(&entry)) {
+      std::erase_if(trace->contacts, [&](const HandContact& contact) { return !renamed.contains(contact.key_pose); });
+      for (auto& contact : trace->contacts) contact.key_pose = renamed.at(contact.key_pose);
+      if (trace->contacts.empty()) {
+        ++report.entries_left_out;
+        continue;
+      }
+    } else if (auto* sitting = std::get_if<Sitting>(&entry)) {
+      const auto known = renamed.find(sitting->key_pose);
+      if (known == renamed.end()) {
+        ++report.entries_left_out;
+        continue;
+      }
+      sitting->key_pose = known->second;
+    }
+    kept.push_back(std::move(entry));
+  }
+  entries = std::move(kept);
+  return report;
+}
+
+}  // namespace kinemap::journal

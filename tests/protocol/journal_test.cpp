@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "protocol/journal.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "protocol/journal_entries.hpp"
+
+namespace kinemap::journal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+Pose some_pose(double x) {
+  return {{x, -2.25, 1.0 / 3.0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3 + x, Eigen::Vector3d(1, 2, 3).normalized()))};
+}
+
+KeyPose key_pose(KeyPoseId id) {
+  KeyPose k;
+  k.id = id;
+  k.time_s = 0.1 * id;
+  k.T_odom_pelvis = some_pose(0.2 * id);
+  k.path_m = 0.21;
+  k.turn_rad = 0.7;
+  if (id % 2 == 0) k.p_pelvis_stance = Eigen::Vector3d(0.1, 0.2, -0.95);
+  if (id % 3 == 0) k.field_disturbed = id % 2 == 0;
+  return k;
+}
+
+Trace trace(KeyPoseId first, std::size_t contacts) {
+  Trace t{1.5, 9.25, 1.78, {}};
+  for (std::size_t i = 0; i < contacts; ++i)
+    t.contacts.push_back({1.5 + 0.1 * static_cast<double>(i), first + static_cast<KeyPoseId>(i / 4),
+                          some_pose(0.01 * static_cast<double>(i))});
+  return t;
+}
+
+/// A short session, an entry of every kind in it.
+std::vector<Entry> session() {
+  std::vector<Entry> entries{SessionStart{"20261122T103303Z", 1795343583000, "0.1.0"},
+                             WearerInfo{"Ada \xC3\x9F", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.71}};
+  for (KeyPoseId id = 0; id < 12; ++id) {
+    entries.push_back(key_pose(id));
+    if (id % 5 == 0) entries.push_back(StreamMark{0.1 * id, 4294967290U + id, 1795343583000 + id});
+  }
+  entries.push_back(trace(2, 30));
+  entries.push_back(Pivot{20, 26, {0.01, -0.17, 0}, Eigen::Vector3d(1e-4, 2e-4, 1.0 / 3.0).asDiagonal()});
+  entries.push_back(Sitting{30, 34, 11, some_pose(3), 0.44, 0.01});
+  entries.push_back(StreamSilence{});
+  return entries;
+}
+
+std::string file_of(const std::vector<Entry>& entries) {
+  std::string bytes = header();
+  for (const auto& entry : entries) bytes += record(entry);
+  return bytes;
+}
+
+std::vector<std::string> encoded(const std::vector<Entry>& entries) {
+  std::vector<std::string> list;
+  for (const auto& entry : entries) list.push_back(encode(entry));
+  return list;
+}
+
+TEST(Journal, GivesBackEveryBitOfEveryEntry) {
+  const auto entries = session();
+  const auto contents = read(file_of(entries), "j");
+  ASSERT_TRUE(contents);
+  EXPECT_TRUE(contents->damage.empty());
+  EXPECT_EQ(contents->torn_bytes, 0U);
+  EXPECT_EQ(contents->sound_bytes, file_of(entries).size());
+  EXPECT_TRUE(encoded(contents->entries) == encoded(entries));
+  const auto& k = std::get<KeyPose>(contents->entries[3]);
+  EXPECT_EQ(k.T_odom_pelvis.p, key_pose(0).T_odom_pelvis.p);
+  EXPECT_EQ(k.T_odom_pelvis.q.coeffs(), key_pose(0).T_odom_pelvis.q.coeffs());
+}
+
+TEST(Journal, CutAtAnyByteGivesAllThatWasWrittenBefore) {
+  const auto entries = session();
+  const auto bytes = file_of(entries);
+  std::vector<std::size_t> ends{header().size()};
+  for (const auto& entry : entries) ends.push_back(ends.back() + record(entry).size());
+  for (std::size_t length = header().size(); length <= bytes.size(); ++length) {
+    const auto contents = read(std::string_view(bytes).substr(0, length), "j");
+    ASSERT_TRUE(contents);
+    const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), length) - ends.begin()) - 1;
+    ASSERT_EQ(contents->entries.size(), whole) << "cut at " << length;
+    ASSERT_EQ(contents->sound_bytes, ends[whole]);
+    ASSERT_EQ(contents->torn_bytes, length - ends[whole]);
+    ASSERT_TRUE(contents->damage.empty());
+  }
+}
+
+TEST(Journal, AFlippedBitCostsOneEntryAndIsReported) {
+  const auto entries = session();
+  const auto bytes = file_of(entries);
+  for (std::size_t at = header().size(); at < bytes.size(); ++at) {
+    auto broken = bytes;
+    broken[at] = static_cast<char>(broken[at] ^ 1 << at % 8);
+    const auto contents = read(broken, "j");
+    ASSERT_TRUE(contents);
+    ASSERT_EQ(contents->entries.size(), entries.size() - 1) << "byte " << at;
+    ASSERT_EQ(contents->damage.size() + (contents->torn_bytes > 0 ? 1 : 0), 1U) << "byte " << at;
+  }
+}
+
+TEST(Journal, OfANewerVersionOrOfSomethingElseIsRefused) {
+  EXPECT_THAT(read("kinemap-journal 2\n", "a/journal").error(), HasSubstr("a/journal: a journal of format 2"));
+  for (const char* text : {"", "kinemap-journal", "kinemap-journal \n", "kinemap-journal -1\n", "PK\x03\x04", "{}"})
+    EXPECT_THAT(read(text, "x").error(), HasSubstr("no journal of Kinemap")) << text;
+}
+
+TEST(Journal, ARecordWithAGoodChecksumAndNonsenseInItIsDamage) {
+  auto bad = key_pose(0);
+  bad.T_odom_pelvis.p.x() = std::numeric_limits<double>::quiet_NaN();
+  auto twisted = key_pose(0);
+  twisted.T_odom_pelvis.q.coeffs() *= 2.0;
+  const auto contents = read(header() + record(bad) + record(twisted) + record(key_pose(0)), "j");
+  ASSERT_TRUE(contents);
+  EXPECT_THAT(contents->entries, SizeIs(1));
+  EXPECT_FALSE(contents->damage.empty());
+  for (const std::string payload : {"", "\xA0", "\xFF", "\xA1\x64type\x01", "\xA1\x64type\x64mark"})
+    EXPECT_FALSE(decode(payload)) << ::testing::PrintToString(payload);
+}
+
+TEST(JournalMend, ChangesNothingWhereNothingIsMissing) {
+  auto entries = session();
+  const auto report = mend(entries);
+  EXPECT_EQ(report.key_poses_missing, 0U);
+  EXPECT_EQ(report.entries_left_out, 0U);
+  EXPECT_TRUE(encoded(entries) == encoded(session()));
+}
+
+TEST(JournalMend, BreaksTheOdometryWhereKeyPosesAreMissing) {
+  std::vector<Entry> entries{key_pose(0), key_pose(1), key_pose(4), key_pose(5), trace(1, 16), trace(2, 4)};
+  entries.push_back(Sitting{1, 2, 3, some_pose(0), 0.4, 0.01});
+  entries.push_back(Sitting{1, 2, 5, some_pose(0), 0.4, 0.01});
+  const auto report = mend(entries);
+  EXPECT_EQ(report.key_poses_missing, 2U);
+  EXPECT_EQ(report.entries_left_out, 2U);
+  ASSERT_THAT(entries, SizeIs(6));
+  EXPECT_FALSE(std::get<KeyPose>(entries[1]).discontinuity);
+  EXPECT_EQ(std::get<KeyPose>(entries[2]).id, 2U);
+  EXPECT_TRUE(std::get<KeyPose>(entries[2]).discontinuity);
+  EXPECT_EQ(std::get<KeyPose>(entries[3]).id, 3U);
+  EXPECT_FALSE(std::get<KeyPose>(entries[3]).discontinuity);
+  const auto& contacts = std::get<Trace>(entries[4]).contacts;  // of key poses 1 and 4; 2 and 3 are lost
+  ASSERT_THAT(contacts, SizeIs(8));
+  EXPECT_EQ(contacts.front().key_pose, 1U);
+  EXPECT_EQ(contacts.back().key_pose, 2U);
+  EXPECT_EQ(std::get<Sitting>(entries[5]).key_pose, 3U);
+}
+
+}  // namespace
+}  // namespace kinemap::journal

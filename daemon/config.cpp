@@ -31,6 +31,7 @@ class Writer {
   void flag(const char* key, bool value) { json_[key] = value; }
   void choice(const char* key, const std::string& value, std::initializer_list<const char*>) { json_[key] = value; }
   void address(const char* key, const std::string& value) { json_[key] = value; }
+  void directory(const char* key, const std::string& value) { json_[key] = value; }
 
   void at_most(const char*, double, const char*, double) {}
 
@@ -59,6 +60,9 @@ class Lister {
   }
   void address(const char* key, const std::string& value) {
     keys_.push_back({prefix_ + key, "", Json(value).dump(), kAddressAllowed});
+  }
+  void directory(const char* key, const std::string& value) {
+    keys_.push_back({prefix_ + key, "", Json(value).dump(), kDirectoryAllowed});
   }
   void at_most(const char*, double, const char*, double) {}
 

@@ -32,6 +32,12 @@ struct Config {
     int max_clients = 64;
     std::size_t client_buffer_bytes = 4194304;  ///< a slower client loses messages beyond it, then its connection
   } api;
+  struct Journal {
+    std::string directory;  ///< empty: $STATE_DIRECTORY, which systemd sets; where that is not set, there is no journal
+    double keep_days = 90.0;
+    double keep_mb = 8192.0;
+    double min_free_mb = 256.0;
+  } journal;
   struct Log {
     std::string level = "info";  ///< trace, debug, info, warn, error; SIGHUP rereads it
   } log;

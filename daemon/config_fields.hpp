@@ -278,6 +278,14 @@ void fields(V& v, Config::Api& c) {
 }
 
 template <class V>
+void fields(V& v, Config::Journal& c) {
+  v.directory("directory", c.directory);
+  v.number("keep_days", c.keep_days, Range{"d", 0, 36500});
+  v.number("keep_mb", c.keep_mb, Range{"MiB", 0, 1e9});
+  v.number("min_free_mb", c.min_free_mb, Range{"MiB", 0, 1e9});
+}
+
+template <class V>
 void fields(V& v, Config::Log& c) {
   v.choice("level", c.level, {"trace", "debug", "info", "warn", "error"});
 }
@@ -289,6 +297,7 @@ void fields(V& v, Config& c) {
   v.section("tracker", c.tracker);
   v.section("mapper", c.mapper);
   v.section("api", c.api);
+  v.section("journal", c.journal);
   v.section("log", c.log);
 }
 

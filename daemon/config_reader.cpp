@@ -56,6 +56,15 @@ void ConfigReader::address(const char* key, std::string& target) {
   target = text;
 }
 
+void ConfigReader::directory(const char* key, std::string& target) {
+  const Json* value = find(key);
+  if (value == nullptr) return;
+  const std::string text = value->is_string() ? value->get<std::string>() : "?";
+  if (!text.empty() && !text.starts_with('/'))
+    return fail(path_of(key), std::string("must be ") + kDirectoryAllowed + ", not " + shown(*value));
+  target = text;
+}
+
 void ConfigReader::at_most(const char* key, double value, const char* bound_key, double bound) {
   if (value <= bound) return;
   fail(path_of(key),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,15 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kReloadable{"log.level", "api.pose_rate_hz", "api.max_clients",
                                                       "api.client_buffer_bytes"};
+
+/// Null where sessions are not kept.
+Result<std::unique_ptr<SessionJournal>> open_journal(const Config::Journal& config) {
+  const char* state = std::getenv("STATE_DIRECTORY");  // systemd's StateDirectory=
+  const std::string directory = !config.directory.empty() ? config.directory : state != nullptr ? state : "";
+  if (!directory.empty()) return SessionJournal::open(directory, config);
+  spdlog::info("journal: none, since journal.directory is not set; a restart begins with an empty map");
+  return std::unique_ptr<SessionJournal>();
+}
 
 }  // namespace
 
@@ -30,7 +40,9 @@ Sources Daemon::sources() {
 
 Started<Daemon> Daemon::start(const Config& config) {
   spdlog::set_level(spdlog::level::from_str(config.log.level));
-  auto daemon = std::unique_ptr<Daemon>(new Daemon(config));
+  auto journal = open_journal(config.journal);
+  if (!journal) return StartError{ExitCode::Config, journal.error()};
+  auto daemon = std::unique_ptr<Daemon>(new Daemon(config, *std::move(journal)));
   auto receiver = Receiver::open(config.suit, config.stream, daemon->suit_sink());
   if (auto* error = std::get_if<StartError>(&receiver)) return std::move(*error);
   daemon->receiver_ = std::get<0>(std::move(receiver));

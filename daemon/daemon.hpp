@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "daemon/config.hpp"
 #include "daemon/pipeline.hpp"
@@ -24,7 +25,8 @@ class Daemon {
   [[nodiscard]] std::uint16_t suit_port() const { return receiver_->port(); }
 
  private:
-  explicit Daemon(const Config& config) : config_(config), pipeline_(config.tracker, config.mapper) {}
+  Daemon(const Config& config, std::unique_ptr<SessionJournal> journal)
+      : config_(config), pipeline_(config.tracker, config.mapper, {}, std::move(journal)) {}
   [[nodiscard]] SuitSink suit_sink();
   [[nodiscard]] Sources sources();
 

@@ -104,7 +104,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response->set(http::field::content_type, reply_.content_type);
     response->set(http::field::cache_control, reply_.immutable ? "public, max-age=31536000, immutable" : "no-store");
     response->set("X-Content-Type-Options", "nosniff");
-    response->set("Content-Security-Policy", "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+    response->set("Content-Security-Policy",
+                  "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
     if (!reply_.download.empty())
       response->set(http::field::content_disposition, "attachment; filename=\"" + reply_.download + "\"");
     if (!reply_.allow.empty()) response->set(http::field::allow, reply_.allow);

@@ -21,10 +21,10 @@ Reply page_reply(const std::string& path) {
 }  // namespace
 
 void add_page_routes(Routes& routes) {
-  routes.add({.path = "/",
-              .summary = "The live page, for browsers.",
-              .content_type = "text/html",
-              .answer = [](const Call&) { return page_reply("/"); }});
+  routes.add(
+      {.path = "/", .summary = "The live page, for browsers.", .content_type = "text/html", .answer = [](const Call&) {
+         return page_reply("/");
+       }});
   routes.add({.path = "/assets/{file}",
               .summary = "What the live page consists of, in files named by their content.",
               .content_type = "application/octet-stream",

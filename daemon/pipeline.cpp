@@ -2,6 +2,7 @@
 #include "daemon/pipeline.hpp"
 
 #include <pthread.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,26 +13,51 @@ namespace {
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+std::int64_t unix_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+constexpr double kMarkS = 1.0;        // between marks of the stream in the journal
+constexpr double kUnseenSpeed = 1.0;  // m/s that the wearer is taken to have walked while nobody looked
+
+std::vector<journal::Entry> stored_entries(SessionJournal* journal) {
+  auto stored = journal != nullptr ? journal->take_stored() : std::nullopt;
+  return stored ? std::move(stored->entries) : std::vector<journal::Entry>{};
+}
+
 }  // namespace
 
-Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes)
+Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes,
+                   std::unique_ptr<SessionJournal> journal)
     : frames_(sizes.frames),
+      unwritten_(sizes.events),
       events_(sizes.events),
       notices_(sizes.notices),
       map_(std::make_shared<const MapSnapshot>()),
+      mapper_config_(mapper),
+      journal_(std::move(journal)),
+      stored_(stored_entries(journal_.get())),
+      entries_to_restore_(stored_.size()),
       tracker_(tracker),
+      resume_(resume_point(stored_)),
       mapper_(mapper) {
   map_.set(mapper_.snapshot());
   solver_ = std::jthread([this](const std::stop_token& stop) { solve(stop); });
-  detection_ = std::jthread([this](const std::stop_token& stop) { detect(stop); });
   pthread_setname_np(solver_.native_handle(), "solver");
+  if (journal_) {
+    recorder_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
+    pthread_setname_np(recorder_.native_handle(), "journal");
+  }
+  detection_ = std::jthread([this](const std::stop_token& stop) { detect(stop); });
   pthread_setname_np(detection_.native_handle(), "detection");
 }
 
 Pipeline::~Pipeline() {
-  // Both are asked before either is joined (by destruction), so that they end side by side.
-  detection_.request_stop();
   solver_.request_stop();
+  detection_.request_stop();
+  detection_.join();  // what it still sent is written
+  recorder_.request_stop();
 }
 
 bool Pipeline::offer(const SuitFrame& frame) {
@@ -48,8 +74,12 @@ bool Pipeline::offer(const WearerInfo& wearer) {
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
-  return {tracker_stats_.get(), solver_stats_.get(), frames_.stats(),
-          events_.stats(),      notices_.stats(),    events_held_back_.load(std::memory_order_relaxed)};
+  return {tracker_stats_.get(), solver_stats_.get(),
+          frames_.stats(),      events_.stats(),
+          notices_.stats(),     events_held_back_.load(std::memory_order_relaxed),
+          journal_ != nullptr,  unwritten_.stats(),
+          journal_stats_.get(), entries_restored_.load(std::memory_order_relaxed),
+          entries_to_restore_};
 }
 
 void Pipeline::detect(const std::stop_token& stop) {
@@ -58,11 +88,12 @@ void Pipeline::detect(const std::stop_token& stop) {
   for (;;) {
     const auto ticket = frames_.ticket();  // before the check for a stop: its wake-up must not fall in between
     if (stop.stop_requested()) return;
-    const auto message = frames_.pop();
+    auto message = frames_.pop();
     if (!message) {
       frames_.wait(ticket);
     } else if (message->wearer) {
-      send(*message->wearer, stop);
+      wearer_ = *message->wearer;
+      if (session_open_) send(*wearer_, stop);
     } else if (message->silence) {
       take_silence(events, stop);
     } else {
@@ -71,35 +102,77 @@ void Pipeline::detect(const std::stop_token& stop) {
   }
 }
 
-void Pipeline::take_frame(const SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop) {
+/// With the first frame it shows whether the stored session goes on.
+void Pipeline::begin_session(const SuitFrame& first, const std::stop_token& stop) {
+  session_open_ = true;
+  const auto now = unix_ms();
+  const auto since_s = resume_ ? time_since(*resume_, first, now) : std::nullopt;
+  if (since_s) {
+    time_offset_s_ = resume_->mark.time_s + *since_s - first.time_s;
+    tracker_.resume(resume_->key_pose, kUnseenSpeed * *since_s);
+    spdlog::info("journal: the suit's stream goes on after {:.1f} s, and so does the session", *since_s);
+  } else if (journal_) {
+    send(journal::SessionStart{journal_->new_id(now), now, KINEMAP_VERSION}, stop);
+  }
+  if (wearer_) send(*wearer_, stop);
+}
+
+void Pipeline::take_frame(SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop) {
+  if (!session_open_) begin_session(frame, stop);
+  frame.time_s += time_offset_s_;
   live_body_.set(live_body_of(frame, now_s()));
   events.clear();
   tracker_.step(frame, events);
   tracker_stats_.set(tracker_.stats());
-  for (Event& event : events) send(std::move(event), stop);
+  for (Event& event : events) send(journal::entry_of(std::move(event)), stop);
+  if (journal_ && frame.time_s >= next_mark_s_) {
+    send(journal::StreamMark{frame.time_s, frame.index, unix_ms()}, stop);
+    next_mark_s_ = frame.time_s + kMarkS;
+  }
 }
 
 void Pipeline::take_silence(std::vector<Event>& events, const std::stop_token& stop) {
   events.clear();
   tracker_.finish(events);
   tracker_stats_.set(tracker_.stats());
-  for (Event& event : events) send(std::move(event), stop);
-  send(Silence{}, stop);
+  for (Event& event : events) send(journal::entry_of(std::move(event)), stop);
+  send(journal::StreamSilence{}, stop);
 }
 
-void Pipeline::send(MapperMessage message, const std::stop_token& stop) {
-  const auto shared = std::make_shared<const MapperMessage>(std::move(message));
-  if (events_.full()) {
+void Pipeline::send(Entry entry, const std::stop_token& stop) {
+  push(journal_ ? unwritten_ : events_, std::make_shared<const Entry>(std::move(entry)), stop);
+}
+
+void Pipeline::push(Queue& queue, std::shared_ptr<const Entry> entry, const std::stop_token& stop) {
+  if (queue.full()) {
     events_held_back_.fetch_add(1, std::memory_order_relaxed);
-    // Half an hour behind: how soon the solver's progress is noticed does not matter any more.
-    while (events_.full() && !stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    // Half an hour behind: how soon the other side's progress is noticed does not matter any more.
+    while (queue.full() && !stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (stop.stop_requested()) return;
   }
-  events_.push(shared);
+  queue.push(entry);
+}
+
+void Pipeline::record(const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [this] { unwritten_.wake(); });
+  for (;;) {
+    const auto ticket = unwritten_.ticket();
+    auto entry = unwritten_.pop();
+    if (entry) {
+      journal_->append(**entry);
+      journal_stats_.set(journal_->stats());
+      push(events_, std::move(*entry), stop);
+    } else if (stop.stop_requested()) {
+      return;  // all is written
+    } else {
+      unwritten_.wait(ticket);
+    }
+  }
 }
 
 void Pipeline::solve(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { events_.wake(); });
+  restore(stop);
   SolverStats stats;
   for (;;) {
     const auto ticket = events_.ticket();
@@ -110,7 +183,7 @@ void Pipeline::solve(const std::stop_token& stop) {
       continue;
     }
     const auto begin = std::chrono::steady_clock::now();
-    take_message(**message);
+    take_entry(**message);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     ++stats.messages;
     stats.busy_s += seconds;
@@ -119,17 +192,46 @@ void Pipeline::solve(const std::stop_token& stop) {
   }
 }
 
-void Pipeline::take_message(const MapperMessage& message) {
-  if (const auto* wearer = std::get_if<WearerInfo>(&message)) {
-    mapper_.set_wearer(*wearer);
-    return;
+/// Maps the stored session again. Nobody is told of what happened in it; the map appears when it is whole.
+void Pipeline::restore(const std::stop_token& stop) {
+  if (stored_.empty()) return;
+  const auto begin = std::chrono::steady_clock::now();
+  for (const auto& entry : stored_) {
+    if (stop.stop_requested()) return;
+    if (const auto event = journal::event_of(entry))
+      mapper_.add(*event);
+    else if (const auto* wearer = std::get_if<WearerInfo>(&entry))
+      mapper_.set_wearer(*wearer);
+    else if (std::holds_alternative<journal::StreamSilence>(entry))
+      mapper_.finish();
+    entries_restored_.fetch_add(1, std::memory_order_relaxed);
   }
-  if (std::holds_alternative<Silence>(message)) {
-    mapper_.finish();
-    map_.set(mapper_.snapshot());
-    return;
-  }
-  const Event& event = std::get<Event>(message);
+  stored_ = {};
+  map_.set(mapper_.snapshot());
+  spdlog::info("journal: {} objects and {} key poses are back, after {:.1f} s", map_.get()->objects.size(),
+               map_.get()->trajectory.size(),
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+void Pipeline::take_entry(const Entry& entry) {
+  std::visit([this](const auto& e) { fold(e); }, entry);
+}
+
+/// Another session: nothing of the one before is known of the rooms that follow. The revisions go on, for the clients.
+void Pipeline::fold(const journal::SessionStart&) {
+  const auto revision = mapper_.snapshot()->revision;
+  if (revision == 0) return;
+  mapper_ = Mapper(mapper_config_, revision + 1);
+  map_.set(mapper_.snapshot());
+}
+
+void Pipeline::fold(const journal::StreamSilence&) {
+  mapper_.finish();
+  map_.set(mapper_.snapshot());
+}
+
+template <class E>
+void Pipeline::fold(const E& event) {
   if (mapper_.add(event)) map_.set(mapper_.snapshot());
   notify(event);
 }

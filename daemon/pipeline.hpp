@@ -16,7 +16,9 @@
 #include "core/tracker/tracker.hpp"
 #include "daemon/latest.hpp"
 #include "daemon/live_body.hpp"
+#include "daemon/resume.hpp"
 #include "daemon/ring.hpp"
+#include "daemon/session_journal.hpp"
 
 namespace kinemap {
 
@@ -40,6 +42,11 @@ struct PipelineStats {
   SolverStats solver;
   RingStats frames, events, notices;
   std::uint64_t events_held_back = 0;  ///< events that had to wait because the solver was that far behind
+  bool has_journal = false;
+  RingStats unwritten;  ///< on their way to the journal
+  JournalStats journal;
+  std::uint64_t entries_restored = 0;    ///< of the session that was found at the start
+  std::uint64_t entries_to_restore = 0;  ///< so many it has
 };
 
 struct RingSizes {
@@ -48,7 +55,8 @@ struct RingSizes {
   std::size_t notices = 256;
 };
 
-/// The two threads between the suit and the map, and the queues between them.
+/// The threads between the suit and the map, and the queues between them. With a journal a third one stands between
+/// detection and solver: what the solver is told, and so all that it announces, is on the disk before.
 ///
 /// What is lost when somebody is too slow, and why just that: a frame may be lost (the suit's poses are absolute, the
 /// next frame says all that the lost one said about the drift), an event may not (key poses are a chain, and traces
@@ -61,7 +69,10 @@ struct RingSizes {
 /// Memory is bounded in each case and nothing on the way from the network ever waits for the solver or for a client.
 class Pipeline {
  public:
-  Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes = {});
+  /// With a journal, the session that it holds is mapped again first; it goes on when the suit's stream turns out to be
+  /// the same, and gives way to a new one with the first frame of another.
+  Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes = {},
+           std::unique_ptr<SessionJournal> journal = nullptr);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -89,30 +100,55 @@ class Pipeline {
     std::shared_ptr<const WearerInfo> wearer;  ///< when set: news of the wearer, and no frame
     bool silence = false;                      ///< when set: the suit has fallen silent, and no frame
   };
-  struct Silence {};
-  using MapperMessage = std::variant<Event, WearerInfo, Silence>;
+  using Entry = journal::Entry;
+  using Queue = Ring<std::shared_ptr<const Entry>>;  // by pointer: a trace is not copied on the fast thread
 
   void detect(const std::stop_token& stop);
+  void record(const std::stop_token& stop);
   void solve(const std::stop_token& stop);
-  void take_frame(const SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
+  void begin_session(const SuitFrame& first, const std::stop_token& stop);
+  void take_frame(SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
   void take_silence(std::vector<Event>& events, const std::stop_token& stop);
-  void send(MapperMessage message, const std::stop_token& stop);
-  void take_message(const MapperMessage& message);
+  void send(Entry entry, const std::stop_token& stop);
+  void push(Queue& queue, std::shared_ptr<const Entry> entry, const std::stop_token& stop);
+  void restore(const std::stop_token& stop);
+  void take_entry(const Entry& entry);
+  void fold(const journal::SessionStart& start);
+  void fold(const journal::StreamMark&) {}
+  void fold(const journal::StreamSilence&);
+  void fold(const WearerInfo& wearer) { mapper_.set_wearer(wearer); }
+  template <class E>
+  void fold(const E& event);
   void notify(const Event& event);
 
-  bool discontinuity_lost_ = false;  // network thread only: a refused frame said so, the next one must
-  Ring<SuitMessage> frames_;         // network → detection
-  Ring<std::shared_ptr<const MapperMessage>>
-      events_;                       // detection → solver; by pointer: a trace is not copied on the fast thread
-  Ring<Notice> notices_;             // solver → the one listener
-  Latest<MapSnapshot> map_;          // solver → everyone who asks
-  LatestValue<LiveBody> live_body_;  // detection → everyone who asks
+  bool discontinuity_lost_ = false;                 // network thread only: a refused frame said so, the next one must
+  Ring<SuitMessage> frames_;                        // network → detection
+  Queue unwritten_;                                 // detection → journal
+  Queue events_;                                    // detection or journal → solver
+  Ring<Notice> notices_;                            // solver → the one listener
+  Latest<MapSnapshot> map_;                         // solver → everyone who asks
+  LatestValue<LiveBody> live_body_;                 // detection → everyone who asks
   LatestValue<TrackerStats> tracker_stats_;         // detection → everyone who asks
   LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks
-  Tracker tracker_;                                 // detection thread only
-  Mapper mapper_;                                   // solver thread only
-  std::jthread solver_, detection_;                 // last: joined first
+  LatestValue<JournalStats> journal_stats_;         // journal → everyone who asks
+  std::atomic<std::uint64_t> entries_restored_{0};  // solver → everyone who asks
+
+  const MapperConfig mapper_config_;
+  const std::unique_ptr<SessionJournal> journal_;  // journal thread only, but for new_id()
+  std::vector<Entry> stored_;                      // solver thread only: what it maps again first
+  const std::uint64_t entries_to_restore_;
+
+  // Detection thread only.
+  Tracker tracker_;
+  std::optional<ResumePoint> resume_;
+  bool session_open_ = false;         // it is decided whether the stored session goes on
+  std::optional<WearerInfo> wearer_;  // told before that
+  double time_offset_s_ = 0.0;        // stream time of the session at the stream's time 0
+  double next_mark_s_ = 0.0;
+
+  Mapper mapper_;  // solver thread only
+  std::jthread solver_, recorder_, detection_;
 };
 
 }  // namespace kinemap

@@ -99,6 +99,20 @@ Json rings_json(const PipelineStats& p) {
   return json;
 }
 
+/// Nothing where no journal is kept.
+Json journal_json(const PipelineStats& p) {
+  const JournalStats& j = p.journal;
+  return {{"healthy", j.healthy},
+          {"bytes", j.bytes},
+          {"entries", j.entries},
+          {"waiting_entries", p.unwritten.fill},
+          {"waiting_bytes", j.waiting_bytes},
+          {"lost_entries", j.lost_entries},
+          {"longest_sync_s", rounded(j.longest_sync_s, 1e6)},
+          {"restored_entries", p.entries_restored},
+          {"entries_to_restore", p.entries_to_restore}};
+}
+
 Json map_json(const Status& status) {
   const MapSnapshot& map = *status.map;
   const SolverStats& solver = status.pipeline.solver;
@@ -161,14 +175,16 @@ bool is_receiving(const ReceiverState& suit) {
 }
 
 std::string status_text(const Status& status) {
-  return text_of({{"version", KINEMAP_VERSION},
-                  {"uptime_s", rounded(status.uptime_s)},
-                  {"suit", suit_json(status)},
-                  {"tracker", tracker_json(status.pipeline.tracker)},
-                  {"rings", rings_json(status.pipeline)},
-                  {"map", map_json(status)},
-                  {"clients", api_json(status.api)},
-                  {"process", process_json()}});
+  Json json({{"version", KINEMAP_VERSION},
+             {"uptime_s", rounded(status.uptime_s)},
+             {"suit", suit_json(status)},
+             {"tracker", tracker_json(status.pipeline.tracker)},
+             {"rings", rings_json(status.pipeline)},
+             {"map", map_json(status)},
+             {"clients", api_json(status.api)},
+             {"process", process_json()}});
+  if (status.pipeline.has_journal) json["journal"] = journal_json(status.pipeline);
+  return text_of(json);
 }
 
 std::string health_text(const Status& status) {

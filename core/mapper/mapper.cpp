@@ -16,9 +16,12 @@ namespace kinemap {
 
 class Mapper::Impl {
  public:
-  explicit Impl(const MapperConfig& config)
+  Impl(const MapperConfig& config, std::uint64_t revision)
       : config_(config), odometry_(config.odometry), resolver_(config.landmarks), closer_(config), touch_(config.hand) {
     state_.graph.touch_points.push_back(touch_.prior());
+    auto empty = std::make_shared<MapSnapshot>();
+    empty->revision = revision;
+    snapshot_ = std::move(empty);
   }
 
   void set_wearer(const WearerInfo& wearer) { wearer_ = wearer; }
@@ -153,10 +156,10 @@ class Mapper::Impl {
   MapState state_;
   std::vector<UnresolvedTrace> unresolved_;
   double time_s_ = 0.0;
-  std::shared_ptr<const MapSnapshot> snapshot_ = std::make_shared<MapSnapshot>();
+  std::shared_ptr<const MapSnapshot> snapshot_;
 };
 
-Mapper::Mapper(const MapperConfig& config) : impl_(std::make_unique<Impl>(config)) {}
+Mapper::Mapper(const MapperConfig& config, std::uint64_t revision) : impl_(std::make_unique<Impl>(config, revision)) {}
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 Mapper& Mapper::operator=(Mapper&&) noexcept = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "core/body.hpp"
@@ -16,7 +17,8 @@ namespace kinemap {
 /// anywhere.
 class Mapper {
  public:
-  explicit Mapper(const MapperConfig& config);
+  /// `revision`: of the empty map, for one that takes the place of another before the same clients.
+  explicit Mapper(const MapperConfig& config, std::uint64_t revision = 0);
   ~Mapper();
   Mapper(Mapper&&) noexcept;
   Mapper& operator=(Mapper&&) noexcept;
@@ -31,7 +33,7 @@ class Mapper {
   /// No more events: optimises to convergence and publishes a last snapshot.
   void finish();
 
-  /// The newest snapshot; never null (revision 0 is the empty map).
+  /// The newest snapshot; never null (the first revision is the empty map).
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const;
 
   /// The graph as it stands (poses by KeyPoseId), for export.

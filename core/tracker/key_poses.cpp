@@ -14,6 +14,15 @@ double heading_or(const Pose& T_odom_pelvis, double otherwise) {
 
 }  // namespace
 
+void KeyPoseFold::resume(const KeyPose& last, double unseen_path_m) {
+  started_ = true;
+  latest_ = last;
+  next_.id = last.id + 1;
+  restart(last.T_odom_pelvis);
+  latest_heading_ = heading_;
+  next_.path_m = unseen_path_m;
+}
+
 std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,
                                          const std::optional<Eigen::Vector3d>& p_pelvis_stance,
                                          std::optional<bool> field_disturbed) {

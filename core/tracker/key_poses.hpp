@@ -20,6 +20,9 @@ class KeyPoseFold {
 
   explicit KeyPoseFold(const TrackerConfig::KeyPoses& config) : config_(config) {}
 
+  /// Before the first frame: goes on from a key pose of another fold (Tracker::resume).
+  void resume(const KeyPose& last, double unseen_path_m);
+
   /// `p_pelvis_stance` as in KeyPose, `field_disturbed` at this frame. The first frame and a discontinuity always give
   /// a key pose.
   std::optional<KeyPose> step(const SuitFrame& frame, Demand demand,

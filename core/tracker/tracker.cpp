@@ -42,6 +42,8 @@ class Tracker::Impl {
     count();
   }
 
+  void resume(const KeyPose& last, double unseen_path_m) { key_poses_.resume(last, unseen_path_m); }
+
   void finish(std::vector<Event>& events) {
     put(sitting_.close(), events);
     put(traces_.close(), events);
@@ -91,6 +93,7 @@ Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
+void Tracker::resume(const KeyPose& last, double unseen_path_m) { impl_->resume(last, unseen_path_m); }
 void Tracker::step(const SuitFrame& frame, std::vector<Event>& events) { impl_->step(frame, events); }
 void Tracker::finish(std::vector<Event>& events) { impl_->finish(events); }
 const TrackerStats& Tracker::stats() const { return impl_->stats(); }

@@ -33,6 +33,10 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;
 
+  /// Before the first frame: the stream goes on from this key pose, of a tracker that is gone. `unseen_path_m`: how far
+  /// the wearer may have walked since.
+  void resume(const KeyPose& last, double unseen_path_m);
+
   /// Takes the next frame and appends the events that it completes, in order of time. A Trace or Sitting only refers to
   /// key poses that were emitted before it.
   void step(const SuitFrame& frame, std::vector<Event>& events);

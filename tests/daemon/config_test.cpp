@@ -65,6 +65,7 @@ struct Counter {
   void flag(const char*, bool&) { ++fields_seen; }
   void choice(const char*, std::string&, std::initializer_list<const char*>) { ++fields_seen; }
   void address(const char*, std::string&) { ++fields_seen; }
+  void directory(const char*, std::string&) { ++fields_seen; }
   void at_most(const char*, double, const char*, double) {}
 };
 
@@ -153,6 +154,8 @@ TEST(Config, WrongTypesAreRefused) {
   EXPECT_THAT(error_of(R"({"suit": {"transport": 7}})"), HasSubstr("suit.transport: must be one of"));
   EXPECT_THAT(error_of(R"({"suit": {"address": "localhost"}})"),
               HasSubstr("suit.address: must be an IPv4 or IPv6 address"));
+  EXPECT_THAT(error_of(R"({"journal": {"directory": "here"}})"),
+              HasSubstr("journal.directory: must be an absolute path"));
   EXPECT_THAT(error_of(R"({"suit": 9763})"), HasSubstr("suit: must be an object"));
   EXPECT_THAT(error_of("[]"), HasSubstr("must be an object"));
   EXPECT_THAT(error_of(R"({"log": null})"), HasSubstr("log: must be an object"));

@@ -73,7 +73,7 @@ TEST(Journal, GivesBackEveryBitOfEveryEntry) {
   EXPECT_EQ(contents->torn_bytes, 0U);
   EXPECT_EQ(contents->sound_bytes, file_of(entries).size());
   EXPECT_TRUE(encoded(contents->entries) == encoded(entries));
-  const auto& k = std::get<KeyPose>(contents->entries[3]);
+  const auto& k = std::get<KeyPose>(contents->entries[2]);
   EXPECT_EQ(k.T_odom_pelvis.p, key_pose(0).T_odom_pelvis.p);
   EXPECT_EQ(k.T_odom_pelvis.q.coeffs(), key_pose(0).T_odom_pelvis.q.coeffs());
 }

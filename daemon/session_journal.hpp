@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "daemon/journal_file.hpp"
+#include "daemon/session_store.hpp"
+
+namespace kinemap {
+
+/// The session under way on disk: found again at the start, written while it lasts, old ones removed.
+class SessionJournal {
+ public:
+  /// The Error is for people: what is wrong with the directory.
+  static Result<std::unique_ptr<SessionJournal>> open(const std::filesystem::path& directory,
+                                                      const Config::Journal& config);
+
+  /// The newest session, once; nullopt when there is none (any more).
+  std::optional<StoredSession> take_stored() { return std::exchange(stored_, std::nullopt); }
+  /// For a session that begins now. Any thread.
+  [[nodiscard]] std::string new_id(std::int64_t unix_ms) const { return store_.new_id(unix_ms); }
+
+  /// Goes on with the stored session, or begins another one with a SessionStart. One thread.
+  void append(const journal::Entry& entry);
+  [[nodiscard]] JournalStats stats() const { return file_ ? file_->stats() : JournalStats{}; }
+
+ private:
+  SessionJournal(SessionStore store, const Config::Journal& config);
+  void begin(const std::string& id, std::uint64_t length);
+
+  SessionStore store_;
+  Config::Journal config_;
+  std::optional<StoredSession> stored_;
+  std::unique_ptr<JournalFile> file_;
+};
+
+}  // namespace kinemap

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "daemon/pipeline.hpp"
+#include "daemon/resume.hpp"
+#include "daemon/session_store.hpp"
+#include "protocol/assembler.hpp"
+#include "tests/daemon/support.hpp"
+
+namespace kinemap {
+namespace {
+
+namespace fs = std::filesystem;
+using test::eventually;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+class JournalTest : public testing::Test {
+ protected:
+  JournalTest() : dir_(fs::temp_directory_path() / ("kinemap-journal-" + std::to_string(::getpid()))) {
+    fs::remove_all(dir_);
+    fs::create_directories(dir_);
+  }
+  ~JournalTest() override { fs::remove_all(dir_); }
+
+  static std::string text(const fs::path& path) {
+    std::ostringstream out;
+    out << std::ifstream(path, std::ios::binary).rdbuf();
+    return out.str();
+  }
+  static std::vector<journal::Entry> entries(const fs::path& path) {
+    const auto contents = journal::read(text(path), path.string());
+    EXPECT_TRUE(contents) << contents.error();
+    EXPECT_TRUE(contents->damage.empty());
+    return contents->entries;
+  }
+  static std::unique_ptr<SessionJournal> open(const fs::path& dir) {
+    auto opened = SessionJournal::open(dir, unlimited());
+    EXPECT_TRUE(opened) << opened.error();
+    return *std::move(opened);
+  }
+  static Config::Journal unlimited() {
+    Config::Journal config;
+    config.min_free_mb = 0;
+    return config;
+  }
+
+  const fs::path dir_;
+};
+
+KeyPose key_pose(KeyPoseId id) {
+  KeyPose k;
+  k.id = id;
+  k.time_s = 0.1 * id;
+  return k;
+}
+
+TEST_F(JournalTest, AFileGoesOnAfterWhatIsSound) {
+  const auto path = dir_ / "a" / "journal.kjr";
+  { JournalFile(path, 0, {}).append(key_pose(0)); }
+  const auto sound = fs::file_size(path);
+  { std::ofstream(path, std::ios::app) << "torn"; }
+  JournalFile file(path, sound, {});
+  file.append(key_pose(1));
+  EXPECT_THAT(entries(path), SizeIs(2));
+  EXPECT_EQ(file.stats().bytes, fs::file_size(path));
+  EXPECT_TRUE(file.stats().healthy);
+}
+
+TEST_F(JournalTest, AFullDiskLosesNothingOnceThereIsRoom) {
+  const auto path = dir_ / "journal.kjr";
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_IGN);
+  JournalFile file(path, 0, {});
+  file.append(key_pose(0));
+  const rlimit full{fs::file_size(path) + 20, before.rlim_max};  // in the middle of the next record
+  setrlimit(RLIMIT_FSIZE, &full);
+  for (KeyPoseId id = 1; id < 50; ++id) file.append(key_pose(id));
+  EXPECT_FALSE(file.stats().healthy);
+  EXPECT_GT(file.stats().waiting_bytes, 0U);
+  EXPECT_THAT(entries(path), SizeIs(1)) << "the record that was cut short is no damage";
+  setrlimit(RLIMIT_FSIZE, &before);
+  file.append(key_pose(50));
+  EXPECT_TRUE(file.stats().healthy);
+  EXPECT_EQ(file.stats().waiting_bytes, 0U);
+  EXPECT_EQ(file.stats().lost_entries, 0U);
+  EXPECT_THAT(entries(path), SizeIs(51));
+}
+
+TEST_F(JournalTest, TooLittleFreeSpaceCountsAsFull) {
+  JournalFile::Limits limits;
+  limits.min_free_bytes = UINT64_MAX;
+  limits.max_waiting_bytes = 1000;
+  JournalFile file(dir_ / "journal.kjr", 0, limits);
+  for (KeyPoseId id = 0; id < 50; ++id) file.append(key_pose(id));
+  EXPECT_FALSE(file.stats().healthy);
+  EXPECT_GT(file.stats().lost_entries, 0U);
+  EXPECT_EQ(file.stats().entries, 50U);
+  EXPECT_LT(file.stats().waiting_bytes, 1500U);
+}
+
+TEST_F(JournalTest, OnlyOneDaemonKeepsItsSessionsHere) {
+  const auto store = SessionStore::open(dir_);
+  ASSERT_TRUE(store);
+  EXPECT_THAT(SessionStore::open(dir_).error(), HasSubstr("another kinemapd"));
+}
+
+TEST_F(JournalTest, ADirectoryThatCannotBeIsAnErrorThatNamesTheKey) {
+  { std::ofstream(dir_ / "file") << "x"; }
+  EXPECT_THAT(SessionStore::open(dir_ / "file" / "sessions").error(), HasSubstr("journal.directory"));
+}
+
+TEST_F(JournalTest, ADamagedJournalGoesToQuarantineAndItsRestIsUsed) {
+  auto store = SessionStore::open(dir_);
+  ASSERT_TRUE(store);
+  const auto path = store->journal_of("20260101T000000Z");
+  {
+    JournalFile file(path, 0, {});
+    for (KeyPoseId id = 0; id < 20; ++id) file.append(key_pose(id));
+  }
+  auto bytes = text(path);
+  bytes[bytes.size() / 2] ^= 1;
+  { std::ofstream(path, std::ios::binary) << bytes; }
+  const auto session = store->newest();
+  ASSERT_TRUE(session);
+  EXPECT_THAT(session->entries, SizeIs(19));
+  EXPECT_EQ(text(dir_ / "quarantine" / "20260101T000000Z.kjr"), bytes);
+  EXPECT_EQ(session->bytes, fs::file_size(path));
+  const auto healed = entries(path);
+  ASSERT_THAT(healed, SizeIs(19));
+  EXPECT_EQ(std::get<KeyPose>(healed.back()).id, 18U);
+}
+
+TEST_F(JournalTest, AJournalOfANewerVersionIsLeftAlone) {
+  auto store = SessionStore::open(dir_);
+  ASSERT_TRUE(store);
+  const auto path = store->journal_of("20260101T000000Z");
+  fs::create_directories(path.parent_path());
+  { std::ofstream(path) << "kinemap-journal 9\nwhatever"; }
+  EXPECT_FALSE(store->newest());
+  EXPECT_EQ(text(path), "kinemap-journal 9\nwhatever");
+}
+
+TEST_F(JournalTest, TheOldestSessionsGoFirstAndTheCurrentOneNever) {
+  auto store = SessionStore::open(dir_);
+  ASSERT_TRUE(store);
+  for (const char* id : {"20260101T000000Z", "20260102T000000Z", "20260103T000000Z"}) {
+    fs::create_directories(store->journal_of(id).parent_path());
+    std::ofstream(store->journal_of(id)) << std::string(600 * 1024, 'x');
+  }
+  const std::int64_t now = store->list().front().changed_s;
+  Config::Journal config;
+  EXPECT_TRUE(store->retain(config, "20260103T000000Z", now).empty());
+  config.keep_mb = 1.2;
+  EXPECT_THAT(store->retain(config, "20260103T000000Z", now), ElementsAre("20260101T000000Z"));
+  config.keep_days = 1;
+  EXPECT_THAT(store->retain(config, "20260103T000000Z", now + 2 * 86400), ElementsAre("20260102T000000Z"));
+  config.keep_mb = 0;
+  EXPECT_TRUE(store->retain(config, "20260103T000000Z", now + 2 * 86400).empty());
+}
+
+TEST_F(JournalTest, TwoSessionsOfOneSecondHaveTwoNames) {
+  auto store = SessionStore::open(dir_);
+  ASSERT_TRUE(store);
+  EXPECT_EQ(store->new_id(1795343583000), "20261122T103303Z");
+  fs::create_directories(store->journal_of("20261122T103303Z").parent_path());
+  EXPECT_EQ(store->new_id(1795343583999), "20261122T103303Zb");
+}
+
+struct Resume : testing::Test {
+  ResumePoint point{key_pose(40), {10.0, 5000, 1'000'000}, 100.0};
+  SuitFrame frame;
+  Resume() { frame.index = 5500; }
+};
+
+TEST_F(Resume, TheCounterTellsHowLongItTook) { EXPECT_EQ(time_since(point, frame, 1'005'000), 5.0); }
+TEST_F(Resume, AWallClockThatIsBehindIsNotBelieved) { EXPECT_EQ(time_since(point, frame, 1'000), 5.0); }
+TEST_F(Resume, TheCounterMayTurnOver) {
+  point.mark.index = 4294967200U;
+  frame.index = 4;
+  EXPECT_EQ(time_since(point, frame, 1'001'000), 1.0);
+}
+TEST_F(Resume, ACounterThatBeganAnewIsAnotherStream) {
+  frame.index = 10;
+  EXPECT_EQ(time_since(point, frame, 1'005'000), std::nullopt);
+}
+TEST_F(Resume, ACounterThatCountedLessThanTheClockIsAnotherStream) {
+  EXPECT_EQ(time_since(point, frame, 1'000'000 + 3'600'000), std::nullopt);
+}
+TEST_F(Resume, NobodyWalksThatFar) {
+  frame[Segment::Pelvis].p.x() = 30.0;
+  EXPECT_EQ(time_since(point, frame, 1'005'000), std::nullopt);
+}
+TEST(ResumePointOf, NeedsTwoMarksAndAKeyPose) {
+  const journal::StreamMark first{1.0, 100, 0}, second{2.0, 220, 1000};
+  EXPECT_FALSE(resume_point({}));
+  EXPECT_FALSE(resume_point({key_pose(0), first}));
+  const auto point = resume_point({key_pose(0), first, key_pose(1), second});
+  ASSERT_TRUE(point);
+  EXPECT_EQ(point->key_pose.id, 1U);
+  EXPECT_EQ(point->rate_hz, 120.0);
+}
+
+std::vector<SuitFrame> glider_frames(std::uint32_t begin, std::uint32_t end) {
+  std::vector<SuitFrame> frames;
+  Assembler assembler{AssemblerConfig{}};
+  const auto keep = [&](const SuitFrame& f) { frames.push_back(f); };
+  for (std::uint32_t i = begin; i < end; ++i) assembler.add(test::glider_datagram(i), i / 120.0, "test:1", keep);
+  assembler.flush(keep);
+  return frames;
+}
+
+class PipelineJournal : public JournalTest {
+ protected:
+  /// Runs a daemon's life: these frames, then its end. The last map.
+  std::shared_ptr<const MapSnapshot> live(std::uint32_t begin, std::uint32_t end, double wait_for_key_poses) {
+    Pipeline pipeline{TrackerConfig{}, MapperConfig{}, {}, open(dir_)};
+    for (const auto& frame : glider_frames(begin, end)) pipeline.offer(frame);
+    pipeline.offer_silence();
+    EXPECT_TRUE(eventually([&] {
+      return pipeline.stats().tracker.frames == end - begin && pipeline.stats().unwritten.fill == 0 &&
+             static_cast<double>(pipeline.map()->trajectory.size()) >= wait_for_key_poses;
+    }));
+    return pipeline.map();
+  }
+};
+
+TEST_F(PipelineJournal, ARestartGoesOnWithTheSameSession) {
+  const auto first = live(0, 600, 20);
+  const auto second = live(720, 960, static_cast<double>(first->trajectory.size()) + 5);  // a second is missing
+  ASSERT_GT(second->trajectory.size(), first->trajectory.size());
+  for (std::size_t i = 0; i < first->trajectory.size(); ++i)
+    EXPECT_EQ(first->trajectory[i].T_odom_pelvis.p, second->trajectory[i].T_odom_pelvis.p);
+  // The glider makes 1 m/s: time and place went on together, over the gap too.
+  const auto& last = second->trajectory.back();
+  EXPECT_NEAR(last.time_s, 959 / 120.0, 0.02);
+  EXPECT_NEAR((last.T_odom_pelvis.p - second->trajectory.front().T_odom_pelvis.p).norm(), last.time_s, 0.05);
+  EXPECT_GT(second->revision, first->revision);
+  auto store = SessionStore::open(dir_);
+  EXPECT_THAT(store->list(), SizeIs(1));
+}
+
+TEST_F(PipelineJournal, AnotherStreamBeginsAnotherSession) {
+  const auto first = live(5000, 5600, 20);
+  const auto second = live(0, 240, 5);
+  EXPECT_LT(second->trajectory.size(), first->trajectory.size());
+  EXPECT_GT(second->revision, first->revision);
+  EXPECT_LT(second->trajectory.front().time_s, 0.1);
+  auto store = SessionStore::open(dir_);
+  EXPECT_THAT(store->list(), SizeIs(2));
+}
+
+TEST_F(PipelineJournal, TheMapIsBackBeforeTheSuitIs) {
+  const auto first = live(0, 600, 20);
+  const Pipeline pipeline{TrackerConfig{}, MapperConfig{}, {}, open(dir_)};
+  EXPECT_TRUE(eventually([&] { return pipeline.map()->trajectory.size() == first->trajectory.size(); }));
+  EXPECT_EQ(pipeline.map()->revision, first->revision);
+}
+
+}  // namespace
+}  // namespace kinemap

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace kinemap {
 namespace {
@@ -15,6 +16,8 @@ constexpr double kSameHeading = 0.15;  // rad
 constexpr double kShrunk = 0.15;       // m: what drift and a hand on its way may have added to a stretch at either end
 constexpr double kPartition = 0.4;     // m: thickest partition whose two faces were touched
 constexpr double kBesideDoor = 1.2;    // m: a partition goes on beyond what was touched by a doorway and its frame
+constexpr double kSameDoorway = 0.6;   // m: passages so near are through one doorway
+constexpr double kFacesApart = 2.2;    // m: its faces may be touched on different sides of the doorway
 constexpr double kDoorGap = 1.6;       // m: collinear stretches so near are one wall with a doorway between
 
 bool same_side(const Stretch& a, const Stretch& b) {
@@ -50,7 +53,7 @@ void unite(Stretch& a, const Stretch& b) {
 }
 
 /// The part of the wall in which walking through it means a doorway: what was touched; the gap to the next stretch in
-/// the same plane; and beside it, where its other face tells that it is a partition.
+/// the same plane; and beside it and as far as its other face, where that tells that it is a partition.
 Interval solid_part(const Stretch& wall, const std::vector<Stretch>& all) {
   Interval solid{wall.touched.lo + kShrunk, wall.touched.hi - kShrunk};
   for (const Stretch& other : all) {
@@ -62,11 +65,11 @@ Interval solid_part(const Stretch& wall, const std::vector<Stretch>& all) {
       if (i.hi < wall.touched.lo && i.hi > wall.touched.lo - kDoorGap) solid.lo = std::min(solid.lo, i.hi);
     }
     const bool other_face = wall.frame.normal.dot(other.frame.normal) < -std::cos(kSameHeading) && d < 0.1 &&
-                            d > -kPartition && i.lo < wall.touched.hi + kBesideDoor &&
-                            i.hi > wall.touched.lo - kBesideDoor;
+                            d > -kPartition && i.lo < wall.touched.hi + kFacesApart &&
+                            i.hi > wall.touched.lo - kFacesApart;
     if (other_face) {
-      solid.lo = std::min(solid.lo, wall.touched.lo - kBesideDoor);
-      solid.hi = std::max(solid.hi, wall.touched.hi + kBesideDoor);
+      solid.lo = std::min({solid.lo, wall.touched.lo - kBesideDoor, i.lo});
+      solid.hi = std::max({solid.hi, wall.touched.hi + kBesideDoor, i.hi});
     }
   }
   return solid;
@@ -85,20 +88,40 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
-/// The trajectory falls into pieces where it passes through walls; what was touched from one piece is in one zone, and
-/// pieces from which the same wall was touched are one.
+/// Where the wearer went through the same doorway again, the places before it are one room, and those behind it.
+void unite_sides(const MapState& state, const WallFrame& wall, const std::vector<Passage>& through,
+                 const std::vector<std::size_t>& piece, Sets& sets) {
+  const auto sides = [&](const Passage& p) {
+    const bool out = wall.distance(state.graph.poses[p.before].p) > 0.0;
+    return std::pair(piece[out ? p.before : p.after], piece[out ? p.after : p.before]);
+  };
+  for (std::size_t k = 1; k < through.size(); ++k) {
+    const auto same = std::find_if(through.begin(), through.begin() + static_cast<std::ptrdiff_t>(k),
+                                   [&](const Passage& p) { return (p.p - through[k].p).norm() < kSameDoorway; });
+    const auto [front, behind] = sides(through[k]);
+    const auto [front_before, behind_before] = sides(*same);
+    sets.unite(front, front_before), sets.unite(behind, behind_before);
+  }
+}
+
+/// The trajectory falls into pieces where it passes through walls; what was touched from one piece is in one zone.
+/// Pieces from which the same wall was touched are one, and so are those on one side of a doorway.
 std::vector<std::size_t> find_zones(const MapState& state, std::vector<Stretch>& stretches) {
   std::vector<std::size_t> piece(state.graph.poses.size(), 0);
+  std::vector<std::vector<Passage>> through;
   for (const Stretch& wall : stretches) {
     const Interval solid = solid_part(wall, stretches);
-    for (const Passage& passage : passages(state, wall.frame, solid.lo, solid.hi))
+    through.push_back(passages(state, wall.frame, solid.lo, solid.hi));
+    for (const Passage& passage : through.back())
       if (passage.pose + 1 < piece.size()) piece[passage.pose + 1] = 1;
   }
   for (std::size_t k = 1; k < piece.size(); ++k) piece[k] += piece[k - 1];
   if (piece.empty()) return piece;
   Sets sets(piece.back() + 1);
-  for (const Stretch& wall : stretches)
-    for (const std::size_t pose : wall.poses) sets.unite(piece[pose], piece[wall.poses.front()]);
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    for (const std::size_t pose : stretches[k].poses) sets.unite(piece[pose], piece[stretches[k].poses.front()]);
+    unite_sides(state, stretches[k].frame, through[k], piece, sets);
+  }
   for (Stretch& wall : stretches)
     if (!wall.poses.empty()) wall.zone = sets.find(piece[wall.poses.front()]);
   for (std::size_t& zone : piece) zone = sets.find(zone);

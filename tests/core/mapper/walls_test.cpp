@@ -147,6 +147,25 @@ TEST(CutWalls, CollinearWallsOfTwoRoomsStayTwo) {
   expect_lengths(cut_walls(visit.state, kConfig), {4, 3, 4, 3, 3, 3.88, 3, 3.88});
 }
 
+/// The two faces of a partition are touched on different sides of its doorway, and the second room in two visits that
+/// touch none of its walls twice.
+TEST(CutWalls, ADoorwayBetweenTheTouchedPartsOfAPartition) {
+  Visit visit;
+  visit.touch({0.3, 0}, {3.7, 0});
+  visit.touch({4, 0.3}, {4, 0.9});
+  visit.touch({3.7, 3}, {0.3, 3});
+  visit.touch({0, 2.7}, {0, 0.3});
+  visit.walk_to({3.4, 1.7}).walk_to({4.8, 1.7});
+  visit.touch({4.42, 0}, {7.7, 0});
+  visit.touch({8, 0.3}, {8, 2.7});
+  visit.walk_to({4.8, 1.7}).walk_to({2.0, 1.7}).walk_to({4.8, 1.7});
+  visit.touch({7.7, 3}, {4.42, 3});
+  visit.touch({4.12, 2.8}, {4.12, 2.5});
+  const auto walls = cut_walls(visit.state, kConfig);
+  expect_lengths(walls, {4, 3, 4, 3, 3.88, 3, 3.88, 3});
+  EXPECT_EQ(find_rooms(visit.state, walls, kConfig).size(), 2u);
+}
+
 TEST(FindDoorways, OneForBothFacesAndAllTimes) {
   const Visit visit = flat(-0.5, 3.5);
   const auto walls = cut_walls(visit.state, kConfig);

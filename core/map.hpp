@@ -71,11 +71,21 @@ struct Doorway {
   std::vector<std::uint32_t> room_ids;  ///< the known rooms that it joins, ascending; none to two
 };
 
+/// How far the odometry from one key pose to the next may be off: one standard deviation each, in the first one's
+/// frame. All 0: not known.
+struct StepSigma {
+  double level_m = 0.0;  ///< forward and sideways, each
+  double up_m = 0.0;
+  double tilt_rad = 0.0;  ///< roll and pitch, each
+  double heading_rad = 0.0;
+};
+
 struct TrajectoryPose {
   KeyPoseId id = 0;
   double time_s = 0.0;
   Pose T_map_pelvis;
   Pose T_odom_pelvis;
+  StepSigma step{};  ///< from the key pose before; the first one has none
 };
 
 /// A trace that was neither wall nor rectangle, kept so that nothing is dropped in silence.

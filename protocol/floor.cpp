@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/mapper/polygon.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -32,8 +34,20 @@ CellGrid empty_grid(std::span<const TrajectoryPose> trajectory, double cell_m, d
   return grid;
 }
 
-/// Marks the cells whose middle is within reach of the way from a to b.
-void mark(CellGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach_m) {
+/// The point of the way from a to b that is nearest to p.
+Eigen::Vector2d nearest(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  const double length2 = (b - a).squaredNorm();
+  return a + (length2 > 0 ? std::clamp((p - a).dot(b - a) / length2, 0.0, 1.0) : 0.0) * (b - a);
+}
+
+/// Marks the cells whose middle is within reach of the way from a to b, with no wall in between.
+void mark(CellGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach_m,
+          std::span<const WallStretch> walls) {
+  const Eigen::Vector2d between = (a + b) / 2;
+  std::vector<const WallStretch*> near;
+  for (const WallStretch& wall : walls)
+    if (!wall.open && (nearest(between, wall.a, wall.b) - between).norm() < reach_m + (b - a).norm() / 2)
+      near.push_back(&wall);
   const auto index = [&](double p, double origin, std::size_t count) {
     return static_cast<std::size_t>(
         std::clamp(std::floor((p - origin) / grid.cell_m), 0.0, static_cast<double>(count - 1)));
@@ -41,13 +55,14 @@ void mark(CellGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, do
   const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
   const std::size_t last_row = index(high.y(), grid.origin.y(), grid.rows);
   const std::size_t last_column = index(high.x(), grid.origin.x(), grid.columns);
-  const Eigen::Vector2d ab = b - a;
   for (std::size_t row = index(low.y(), grid.origin.y(), grid.rows); row <= last_row; ++row)
     for (std::size_t column = index(low.x(), grid.origin.x(), grid.columns); column <= last_column; ++column) {
       const Eigen::Vector2d middle = grid.origin + grid.cell_m * Eigen::Vector2d(static_cast<double>(column) + 0.5,
                                                                                  static_cast<double>(row) + 0.5);
-      const double along = ab.squaredNorm() > 0 ? std::clamp((middle - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
-      if ((middle - a - along * ab).norm() <= reach_m) grid.at(column, row) = 1;
+      const Eigen::Vector2d body = nearest(middle, a, b);
+      if ((middle - body).norm() > reach_m) continue;
+      const auto hides = [&](const WallStretch* wall) { return ways_cross(body, middle, wall->a, wall->b); };
+      if (std::none_of(near.begin(), near.end(), hides)) grid.at(column, row) = 1;
     }
 }
 
@@ -63,13 +78,14 @@ double floor_height(const MapSnapshot& map, const Room* room) {
   return z.value_or(0.0);
 }
 
-CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m) {
+CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m,
+                      std::span<const WallStretch> walls) {
   if (trajectory.empty()) return {};
   CellGrid grid = empty_grid(trajectory, cell_m, reach_m);
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const Eigen::Vector2d to = trajectory[i].T_map_pelvis.p.head<2>();
     const Eigen::Vector2d from = i > 0 ? trajectory[i - 1].T_map_pelvis.p.head<2>().eval() : to;
-    mark(grid, (to - from).norm() <= kLongestStep ? from : to, to, reach_m);
+    mark(grid, (to - from).norm() <= kLongestStep ? from : to, to, reach_m, walls);
   }
   return grid;
 }

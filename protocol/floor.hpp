@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/map.hpp"
+#include "protocol/export/walls.hpp"
 
 namespace kinemap {
 
@@ -29,7 +30,9 @@ double floor_height(const MapSnapshot& map, const Room* room = nullptr);
 
 /// The floor within `reach_m` of the level way of the pelvis: no furniture stands there. The grid ends where the walked
 /// floor ends; its origin is a multiple of the cell. Cells are doubled until there are at most a million. Key poses
-/// more than 2 m apart (the suit was restarted in between) are not joined. Empty without a trajectory.
-CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m);
+/// more than 2 m apart (the suit was restarted in between) are not joined. What lies behind one of the `walls` as seen
+/// from the way is left out. Empty without a trajectory.
+CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m,
+                      std::span<const WallStretch> walls = {});
 
 }  // namespace kinemap

@@ -211,37 +211,6 @@ class Parser {
   std::vector<Fix> fixes_;
 };
 
-/// Shortest decimal that reads back to the same double.
-void append(std::string& text, double value) {
-  char buffer[32];
-  const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
-  text += ' ';
-  text.append(buffer, result.ptr);
-}
-
-void append(std::string& text, const Pose& T) {
-  for (const double v : {T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w()}) append(text, v);
-}
-
-void append(std::string& text, const graph::BetweenFactor& f) {
-  append(text, f.T_i_j);
-  const Matrix6 U = f.sqrt_information * quaternion_scale().inverse();
-  const Matrix6 information = U.transpose() * U;
-  for (int r = 0; r < 6; ++r) {
-    for (int c = r; c < 6; ++c) append(text, information(r, c));
-  }
-}
-
-void append(std::string& text, const graph::Landmark& landmark) {
-  constexpr const char* kNames[] = {" wall", " table", " screen", " seat", " direction"};
-  text += kNames[static_cast<int>(landmark.kind)];
-  append(text, graph::landmark_pose(landmark));
-  if (landmark.kind == graph::LandmarkKind::Table || landmark.kind == graph::LandmarkKind::Screen) {
-    append(text, landmark.x[4]);
-    append(text, landmark.x[5]);
-  }
-}
-
 }  // namespace
 
 Result<G2oGraph> parse_g2o(std::istream& in, const std::string& name) { return Parser(name).run(in); }
@@ -250,46 +219,6 @@ Result<G2oGraph> read_g2o(const std::filesystem::path& path) {
   std::ifstream in(path);
   if (!in) return Error{path.string() + ": cannot be opened: " + std::strerror(errno)};
   return parse_g2o(in, path.string());
-}
-
-std::optional<Error> write_g2o(const std::filesystem::path& path, const graph::Graph& graph,
-                               std::span<const std::int64_t> ids) {
-  const auto id = [&](std::size_t i) { return std::to_string(i < ids.size() ? ids[i] : static_cast<std::int64_t>(i)); };
-  std::string text = "# kinemap: pose graph, map frame, z up, metres\n";
-  for (std::size_t i = 0; i < graph.poses.size(); ++i) {
-    text += "VERTEX_SE3:QUAT " + id(i);
-    append(text, graph.poses[i]);
-    text += '\n';
-  }
-  for (const graph::PriorFactor& f : graph.priors) text += "FIX " + id(f.i) + '\n';
-  for (const graph::BetweenFactor& f : graph.between) {
-    text += "EDGE_SE3:QUAT " + id(f.i) + ' ' + id(f.j);
-    append(text, f);
-    text += '\n';
-  }
-  for (std::size_t l = 0; l < graph.landmarks.size(); ++l) {
-    if (!graph.landmarks[l].active) continue;
-    text += "# landmark " + std::to_string(l);
-    append(text, graph.landmarks[l]);
-    text += '\n';
-  }
-  std::ofstream out(path, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) return Error{path.string() + ": cannot be written: " + std::strerror(errno)};
-  return std::nullopt;
-}
-
-double g2o_cost(const graph::Graph& graph) {
-  const Matrix6 to_quaternion = quaternion_scale().inverse();
-  double sum = 0.0;
-  for (const graph::BetweenFactor& f : graph.between) {
-    const Pose d = f.T_i_j.inverse() * (graph.poses[f.i].inverse() * graph.poses[f.j]);
-    Eigen::Matrix<double, 6, 1> e;
-    e << d.p, (d.q.w() < 0.0 ? -1.0 : 1.0) * d.q.vec();
-    sum += (f.sqrt_information * to_quaternion * e).squaredNorm();
-  }
-  return sum;
 }
 
 }  // namespace kinemap

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/graph/graph.hpp"
+#include "core/map.hpp"
 #include "protocol/wire/result.hpp"
 
 /// SE(3) pose graphs in g2o's text format: VERTEX_SE3:QUAT id x y z qx qy qz qw, EDGE_SE3:QUAT i j x y z qx qy qz qw
@@ -36,12 +37,14 @@ Result<G2oGraph> read_g2o(const std::filesystem::path& path);
 /// The same from a stream; `name` stands for the path in errors.
 Result<G2oGraph> parse_g2o(std::istream& in, const std::string& name);
 
-/// Writes poses (ids 0, 1, … or as given, one per pose), FIX for poses with a prior, between factors, and each landmark
-/// as a comment line
-/// `# landmark INDEX KIND x y z qx qy qz qw [sizes]`, which g2o's readers skip. Losses and all other factors have no
-/// g2o form.
-std::optional<Error> write_g2o(const std::filesystem::path& path, const graph::Graph& graph,
-                               std::span<const std::int64_t> ids = {});
+/// Poses (ids 0, 1, … or as given, one per pose), FIX for poses with a prior, and between factors. Losses and all other
+/// factors have no g2o form.
+std::string g2o_text(const graph::Graph& graph, std::span<const std::int64_t> ids = {});
+
+/// The key poses as the optimum has them, odometry as edges between them with its noise, and the objects as comment
+/// lines `# object ID TYPE x y z qx qy qz qw [sizes]`, which g2o's readers skip. What moved the poses to the optimum,
+/// contacts and seats, has no g2o form.
+std::string g2o_text(const MapSnapshot& map);
 
 /// Σ eᵀΩe over the between factors with the translation and the quaternion's vector part, losses left out: the figure
 /// that pose-graph benchmarks quote.

@@ -137,8 +137,8 @@ class Mapper::Impl {
     map->trajectory.clear();
     map->trajectory.reserve(key_poses.size());
     for (const auto& key_pose : key_poses)
-      map->trajectory.push_back(
-          {key_pose.id, key_pose.time_s, state_.graph.poses[key_pose.id], key_pose.T_odom_pelvis});
+      map->trajectory.push_back({key_pose.id, key_pose.time_s, state_.graph.poses[key_pose.id], key_pose.T_odom_pelvis,
+                                 step_sigma(state_.graph, key_pose.id)});
     if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();
     map->graph = state_.summary;
     map->graph.key_poses = key_poses.size();

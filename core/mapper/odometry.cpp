@@ -114,6 +114,12 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
   pose.p.z() += level_z_ - (pose * floor.p_i).z();
 }
 
+StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to) {
+  if (to == 0) return {};
+  const graph::Matrix6& information = graph.between[to - 1].sqrt_information;  // diagonal
+  return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), 1.0 / information(5, 5)};
+}
+
 graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config) {
   constexpr double kUnknown = 1.0;  // 1/rad: a restart's heading stays unknown
   graph::Graph out = graph;

@@ -6,6 +6,7 @@
 
 #include "core/events.hpp"
 #include "core/graph/graph.hpp"
+#include "core/map.hpp"
 #include "core/mapper/config.hpp"
 
 namespace kinemap {
@@ -46,6 +47,9 @@ class Odometry {
 /// `magnetic`: beside metal.
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
                                          const MapperConfig::Odometry& config);
+
+/// The noise of the odometry that leads to pose `to`, as the graph has it; all 0 for the first pose.
+StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to);
 
 /// The graph with the heading noise that errors usually show, for the covariances that are published.
 graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config);

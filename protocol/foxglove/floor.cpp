@@ -29,7 +29,7 @@ std::string base64(std::string_view bytes) {
 }  // namespace
 
 Message floor(const MapSnapshot& map) {
-  const CellGrid grid = walked_floor(map.trajectory, kCell, kReach);
+  const CellGrid grid = walked_floor(map.trajectory, kCell, kReach, wall_stretches(map));
   std::string data;
   data.reserve(4 * grid.cells.size());
   for (const std::uint8_t walked : grid.cells) data += walked ? kWalked : kUnknown;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/gltf.hpp"
+#include "protocol/export/gltf.hpp"
 
 #include <gtest/gtest.h>
 

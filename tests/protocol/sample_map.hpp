@@ -59,7 +59,8 @@ inline MapSnapshot sample_map() {
   map.doorways = {{{4.0, 1.2}, 3.14, {1}}};
   for (KeyPoseId i = 0; i < 4; ++i) {
     const double x = 0.5 + 0.25 * i;
-    map.trajectory.push_back({i, 0.5 * i, level_pose({x, 1.0, 0.95}, 0.1), level_pose({x, 1.1, 0.96}, 0.2)});
+    const StepSigma step = i > 0 ? StepSigma{0.01, 0.005, 0.009, 0.02} : StepSigma{};
+    map.trajectory.push_back({i, 0.5 * i, level_pose({x, 1.0, 0.95}, 0.1), level_pose({x, 1.1, 0.96}, 0.2), step});
   }
   map.unresolved = {{20.0, 24.5, "neither closed nor long"}};
   map.T_map_odom = level_pose({0.1, -0.2, 0.0}, -0.1);

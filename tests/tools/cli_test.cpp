@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "protocol/export/exports.hpp"
 #include "protocol/map_json.hpp"
 #include "tests/protocol/sample_map.hpp"
 #include "tests/tools/run_command.hpp"
@@ -131,11 +132,12 @@ TEST_F(Cli, BuildWritesEverythingAndTheSameTwice) {
   EXPECT_NE(first.out.find("× real time"), string::npos);
   ASSERT_EQ(kinemap({"build", pcap(), "--out", at("b")}).code, 0);
   ASSERT_EQ(kinemap({"build", pcap(), "--out", at("b")}).code, 0) << "over the files of an earlier build";
-  for (const char* name : {"map.json", "trajectory.tum", "odometry.tum", "graph.g2o", "scene.glb"}) {
+  for (const Export& file : exports()) {
+    const string name = file.name;
     EXPECT_GT(fs::file_size(at("a") + "/" + name), 0U) << name;
     EXPECT_EQ(slurp(at("a") + "/" + name), slurp(at("b") + "/" + name)) << name;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(at("b")), {}), 5) << "no temporary file is left";
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("b")), {}), std::ssize(exports())) << "no temporary file is left";
   const Ran json = kinemap({"build", pcap(), "--out", at("b"), "--json"});
   EXPECT_EQ(Json::parse(json.out)["format"], "pcap");
   EXPECT_EQ(json.err, "") << "no progress bar where stderr is no terminal";
@@ -185,7 +187,8 @@ TEST_F(Cli, AFullDiskIsSaidAndLeavesTheOldMap) {
   EXPECT_EQ(ran.code, 1) << ran.err;
   EXPECT_NE(ran.err.find("cannot be written: File too large"), string::npos) << ran.err;
   EXPECT_EQ(slurp(at("full/map.json")), before);
-  EXPECT_EQ(std::distance(fs::directory_iterator(at("full")), {}), 5) << "no temporary file is left";
+  EXPECT_EQ(std::distance(fs::directory_iterator(at("full")), {}), std::ssize(exports()))
+      << "no temporary file is left";
 }
 
 TEST_F(Cli, AFullStandardOutputIsSaid) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "protocol/export/exports.hpp"
 #include "protocol/map_json.hpp"
 #include "tests/protocol/sample_map.hpp"
 #include "tools/kinemap/endpoint.hpp"
@@ -15,7 +16,7 @@
 #include "tools/kinemap/map_files.hpp"
 #include "tools/kinemap/news.hpp"
 #include "tools/kinemap/object_table.hpp"
-#include "tools/kinemap/plan.hpp"
+#include "tools/kinemap/plan_text.hpp"
 #include "tools/kinemap/text_table.hpp"
 
 namespace kinemap::cli {
@@ -78,10 +79,9 @@ TEST_F(Files, AFullDiskLeavesTheOldFileWhole) {
 
 TEST_F(Files, MapFilesRoundTrip) {
   const MapSnapshot map = sample_map();
-  ASSERT_FALSE(write_map_files(path_.string(), map, {}));
-  for (const char* name : {"map.json", "trajectory.tum", "odometry.tum", "graph.g2o", "scene.glb"})
-    EXPECT_TRUE(fs::exists(at(name))) << name;
-  EXPECT_EQ(entries(), 5U);
+  ASSERT_FALSE(write_map_files(path_.string(), map));
+  for (const Export& file : exports()) EXPECT_TRUE(fs::exists(at(file.name))) << file.name;
+  EXPECT_EQ(entries(), exports().size());
   for (const std::string& path : {path_.string(), at("map.json")}) {
     const auto read = read_map_files(path);
     ASSERT_TRUE(read) << read.error();
@@ -93,7 +93,7 @@ TEST_F(Files, MapFilesRoundTrip) {
 
 TEST_F(Files, MapFilesThatDoNotBelongTogetherAreRefused) {
   MapSnapshot map = sample_map();
-  ASSERT_FALSE(write_map_files(path_.string(), map, {}));
+  ASSERT_FALSE(write_map_files(path_.string(), map));
   map.trajectory.pop_back();
   ASSERT_FALSE(write_file(at("odometry.tum"), "0 1 2 3 0 0 0 1\n"));
   EXPECT_NE(read_map_files(path_.string()).error().find("both must come from one build"), std::string::npos);
@@ -173,12 +173,12 @@ bool is_well_formed(const std::string& xml) {
 }
 
 TEST(Plan, SvgIsWellFormedAndNamesAllObjects) {
-  const std::string svg = plan_svg(make_plan(sample_map()));
+  const std::string svg = plan_svg(sample_map());
   EXPECT_TRUE(is_well_formed(svg));
-  for (const char* text : {"W1  3.00 m", "T2", "1.60 × 0.80 m", "S5  1.00 × 0.60 m", "C7", "10.0 m²", "2 m"})
+  for (const char* text : {"W1 · 3.00 m", "T2", "1.60 × 0.80 m", "S5 · 1.00 × 0.60 m", "C7", "10.0 m²", "2 m"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   EXPECT_EQ(svg.find("nan"), std::string::npos);
-  EXPECT_TRUE(is_well_formed(plan_svg(make_plan(MapSnapshot{}))));
+  EXPECT_TRUE(is_well_formed(plan_svg(MapSnapshot{})));
 }
 
 TEST(Plan, TextFitsTheTerminal) {

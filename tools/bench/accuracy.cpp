@@ -38,7 +38,7 @@ Result<std::shared_ptr<const eval::Truth>> read_truth(const std::string& path) {
 
 std::optional<Error> keep_map(const std::string& directory, const cli::BatchResult& built) {
   if (auto error = cli::make_output_directory(directory)) return error;
-  return cli::write_map_files(directory, *built.map, built.graph);
+  return cli::write_map_files(directory, *built.map);
 }
 
 /// One session with each configuration.
@@ -65,15 +65,15 @@ Result<std::vector<Session>> run_session(const sim::SimOptions& sim, const std::
 }  // namespace
 
 std::string session_name(const sim::SimOptions& sim) {
-  std::string key = cli::format("seed%llu-%s-%g-speed%g", static_cast<unsigned long long>(sim.seed),
+  std::string key = format("seed%llu-%s-%g-speed%g", static_cast<unsigned long long>(sim.seed),
                                 to_string(sim.drift), sim.rate_hz, sim.speed);
-  if (sim.rooms) key += cli::format("-rooms%d", *sim.rooms);
-  if (sim.rounds) key += cli::format("-rounds%d", *sim.rounds);
-  if (sim.packet_loss) key += cli::format("-loss%g", *sim.packet_loss);
-  if (sim.stature_m) key += cli::format("-stature%g", *sim.stature_m);
-  if (sim.closure_spacing_m) key += cli::format("-spacing%g", *sim.closure_spacing_m);
+  if (sim.rooms) key += format("-rooms%d", *sim.rooms);
+  if (sim.rounds) key += format("-rounds%d", *sim.rounds);
+  if (sim.packet_loss) key += format("-loss%g", *sim.packet_loss);
+  if (sim.stature_m) key += format("-stature%g", *sim.stature_m);
+  if (sim.closure_spacing_m) key += format("-spacing%g", *sim.closure_spacing_m);
   return key +
-         cli::format("-shell%d-slop%g%s", static_cast<int>(sim.shell), sim.sloppiness, sim.distractors ? "" : "-plain");
+         format("-shell%d-slop%g%s", static_cast<int>(sim.shell), sim.sloppiness, sim.distractors ? "" : "-plain");
 }
 
 std::vector<sim::SimOptions> sessions_of(const std::vector<std::uint64_t>& seeds, const sim::SimOptions& base) {
@@ -101,7 +101,7 @@ Result<std::vector<std::vector<Session>>> run_sessions(const std::vector<sim::Si
     const std::scoped_lock lock(bar_mutex);
     ++finished;
     bar.update(static_cast<double>(finished) / static_cast<double>(sessions.size()),
-               cli::format("%zu of %zu sessions", finished, sessions.size()));
+               format("%zu of %zu sessions", finished, sessions.size()));
   });
 
   std::vector<std::vector<Session>> result(configs.size());

@@ -11,7 +11,6 @@
 namespace kinemap::bench {
 namespace {
 
-using cli::format;
 using Point = Eigen::Vector2d;
 
 constexpr double kWidth = 860.0;

@@ -11,7 +11,6 @@ namespace kinemap::bench {
 namespace {
 
 using cli::fail;
-using cli::format;
 using cli::print;
 using Json = nlohmann::ordered_json;
 

@@ -71,12 +71,12 @@ int pipeline(const Options& options) {
     return cli::print("pipeline", pretty_text(json));
   }
   std::string text =
-      cli::format("%s, %d runs in one thread\n\n| stage | median s | fastest s | × real time |\n|---|---|---|---|\n",
+      format("%s, %d runs in one thread\n\n| stage | median s | fastest s | × real time |\n|---|---|---|---|\n",
                   scenario->name.c_str(), options.runs);
   for (const Stage& stage : stages)
-    text += cli::format("| %s | %.3f | %.3f | %.0f |\n", stage.name, stage.median_s, stage.fastest_s,
+    text += format("| %s | %.3f | %.3f | %.0f |\n", stage.name, stage.median_s, stage.fastest_s,
                         duration_s / stage.median_s);
-  return cli::print("pipeline", text + cli::format("\npeak memory of the process: %.0f MB\n", peak_megabytes()));
+  return cli::print("pipeline", text + format("\npeak memory of the process: %.0f MB\n", peak_megabytes()));
 }
 
 }  // namespace

@@ -115,13 +115,13 @@ int tracker(const Options& options) {
                                  {"steps", latencies.step_us.size()},
                                  {"solver_busy", !options.idle},
                                  {"optimisations_meanwhile", optimisations}};
-  std::string text = cli::format(
+  std::string text = format(
       "%s; %zu steps at %.0f Hz, %s\n\n| percentile | step µs | begun late by µs |\n|---|---|---|\n",
       scenario->name.c_str(), latencies.step_us.size(), options.rate_hz,
-      options.idle ? "no solver" : cli::format("the solver made %zu optimisations meanwhile", optimisations).c_str());
+      options.idle ? "no solver" : format("the solver made %zu optimisations meanwhile", optimisations).c_str());
   for (const auto& [name, part] : ranks) {
     const double step = percentile(latencies.step_us, part), late = percentile(latencies.late_us, part);
-    text += cli::format("| %s | %.1f | %.1f |\n", name, step, late);
+    text += format("| %s | %.1f | %.1f |\n", name, step, late);
     json["step_us"][name] = step;
     json["late_us"][name] = late;
   }

@@ -17,7 +17,6 @@ namespace kinemap::bench {
 namespace {
 
 namespace fs = std::filesystem;
-using cli::format;
 
 constexpr std::size_t kWorstCases = 5;
 constexpr std::size_t kWorstOfOne = 3;

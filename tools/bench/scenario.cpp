@@ -44,7 +44,7 @@ Result<Scenario> make_scenario(const std::string& directory, const std::string& 
   const auto report = sim::simulate_to_directory(*options);
   if (!report) return Error{report.error()};
   return Scenario{report->session_path, report->duration_s,
-                  cli::format("simulated session, seed %llu, %d rooms, %.0f s",
+                  format("simulated session, seed %llu, %d rooms, %.0f s",
                               static_cast<unsigned long long>(options->seed), report->rooms, report->duration_s)};
 }
 

@@ -12,7 +12,6 @@
 namespace kinemap::bench {
 namespace {
 
-using cli::format;
 using Point = Eigen::Vector2d;
 
 constexpr double kWidth = 860.0, kMargin = 44.0, kMaxHeight = 720.0, kFooter = 74.0;

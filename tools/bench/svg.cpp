@@ -8,7 +8,6 @@
 namespace kinemap::bench {
 namespace {
 
-using cli::format;
 
 std::string escaped(const std::string& words) {
   std::string out;

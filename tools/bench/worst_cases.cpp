@@ -12,7 +12,6 @@
 namespace kinemap::bench {
 namespace {
 
-using cli::format;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 

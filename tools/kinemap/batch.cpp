@@ -62,7 +62,7 @@ Result<BatchResult> build_map(const std::string& recording, const Config& config
     const Stopwatch watch(times.map_s);
     mapper.finish();
   }
-  return BatchResult{*summary, tracker.stats(), mapper.snapshot(), mapper.graph(), times};
+  return BatchResult{*summary, tracker.stats(), mapper.snapshot(), times};
 }
 
 }  // namespace kinemap::cli

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "core/graph/graph.hpp"
 #include "core/map.hpp"
 #include "core/tracker/tracker.hpp"
 #include "daemon/config.hpp"
@@ -24,7 +23,6 @@ struct BatchResult {
   RecordingSummary recording;
   TrackerStats tracker;
   std::shared_ptr<const MapSnapshot> map;
-  graph::Graph graph;
   StageTimes times;
 };
 

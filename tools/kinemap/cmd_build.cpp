@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "protocol/export/exports.hpp"
 #include "protocol/json_text.hpp"
 #include "tools/kinemap/batch.hpp"
 #include "tools/kinemap/command.hpp"
@@ -111,16 +112,17 @@ int build(const Options& options) {
   }();
   if (!result) return fail("build", result.error());
   for (const std::string& warning : result->recording.warnings) fail("build", "warning: " + warning);
-  if (auto error = write_map_files(options.out, *result->map, result->graph)) return fail("build", error->message);
+  if (auto error = write_map_files(options.out, *result->map)) return fail("build", error->message);
 
   if (options.json) return print("build", pretty_text(json_report(*result, options.out)));
   const double total = result->times.total_s();
+  std::string names;
+  for (const Export& file : exports()) names += std::string(names.empty() ? "" : ", ") + file.name;
   return print("build", report(*result) + object_table(*result->map) + '\n' + object_counts(*result->map) +
                             format("\n%.2f s: %.0f × real time (read %.2f s, track %.2f s, map %.2f s)\n", total,
                                    result->recording.duration_s / total, result->times.read_s, result->times.track_s,
                                    result->times.map_s) +
-                            "wrote " + options.out +
-                            "/: map.json, trajectory.tum, odometry.tum, graph.g2o, scene.glb\n");
+                            "wrote " + options.out + "/: " + names + '\n');
 }
 
 }  // namespace
@@ -132,10 +134,9 @@ void add_build(CLI::App& app, Run& run) {
       "  kinemap build session.pcap --out map          a capture: tcpdump -w session.pcap udp port 9763\n"
       "  kinemap build take-003.mvnx --out map         an export of MVN Analyze\n"
       "  kinemap build session.pcap --out map --json | jq .objects\n"
-      "\nWrites DIR/map.json (the objects), trajectory.tum and odometry.tum (pelvis, corrected and as the suit gave "
-      "it:\n"
-      "t x y z qx qy qz qw), graph.g2o and scene.glb (open it in any 3-D viewer). Files of an earlier build are "
-      "replaced.",
+      "\nWrites DIR/map.json (the objects) and every other file that 'kinemap export --list' names: plan.svg, "
+      "scene.glb,\n"
+      "floor.pgm, world.sdf, … Files of an earlier build are replaced.",
       options, build);
   command->add_option("INPUT", options->input, "Recording: .pcap (classic libpcap) or .mvnx, told apart by content")
       ->required();

@@ -11,7 +11,7 @@
 #include "tools/kinemap/files.hpp"
 #include "tools/kinemap/map_files.hpp"
 #include "tools/kinemap/object_table.hpp"
-#include "tools/kinemap/plan.hpp"
+#include "tools/kinemap/plan_text.hpp"
 #include "tools/kinemap/progress.hpp"
 #include "tools/kinemap/remote_map.hpp"
 
@@ -29,10 +29,10 @@ struct Options {
 constexpr int kMaxColumns = 120;
 constexpr int kMaxRows = 40;
 
-std::string describe(const MapSnapshot& map, const Plan& plan, const Options& options) {
+std::string describe(const MapSnapshot& map, const Options& options) {
   std::string text;
   if (!options.no_plan && (!map.objects.empty() || map.trajectory.size() > 1))
-    text += plan_text(plan, std::min(terminal_width(STDOUT_FILENO, 100), kMaxColumns), kMaxRows,
+    text += plan_text(make_plan(map), std::min(terminal_width(STDOUT_FILENO, 100), kMaxColumns), kMaxRows,
                       ::isatty(STDOUT_FILENO) != 0) +
             '\n';
   if (!map.objects.empty()) text += object_table(map) + '\n';
@@ -45,12 +45,11 @@ int show_map(const Options& options) {
   const auto map = options.file.empty() ? fetch_map(*daemon) : read_map_files(options.file);
   if (!map) return fail("map", map.error());
 
-  const Plan plan = make_plan(*map);
   if (!options.svg.empty()) {
-    if (auto error = write_file(options.svg, plan_svg(plan))) return fail("map", error->message);
+    if (auto error = write_file(options.svg, plan_svg(*map))) return fail("map", error->message);
     std::fprintf(stderr, "wrote %s\n", options.svg.c_str());
   }
-  return print("map", options.json ? pretty_text(to_json(*map)) : describe(*map, plan, options));
+  return print("map", options.json ? pretty_text(to_json(*map)) : describe(*map, options));
 }
 
 }  // namespace

@@ -41,8 +41,7 @@ int optimize_file(const Options& options) {
   const graph::Verdict verdict = graph::optimize(file->graph, solver);
   const double after = g2o_cost(file->graph);
   if (!verdict.usable) return fail("optimize", options.input + ": no usable solution: " + verdict.message);
-  const auto write = [&](const std::string& temporary) { return write_g2o(temporary, file->graph, file->ids); };
-  if (auto error = write_file_with(options.out, write)) return fail("optimize", error->message);
+  if (auto error = write_file(options.out, g2o_text(file->graph, file->ids))) return fail("optimize", error->message);
 
   if (options.json)
     return print("optimize", pretty_text({{"poses", file->graph.poses.size()},

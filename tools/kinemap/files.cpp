@@ -68,15 +68,6 @@ std::optional<Error> write_file(const std::string& path, const std::string& cont
   return error;
 }
 
-std::optional<Error> write_file_with(const std::string& path,
-                                     const std::function<std::optional<Error>(const std::string&)>& write) {
-  const std::string temporary = path + ".unfinished";
-  auto error = write(temporary);
-  if (!error) return replace_file(temporary, path);
-  ::unlink(temporary.c_str());
-  return error;
-}
-
 std::optional<Error> make_output_directory(const std::string& path) {
   std::error_code code;
   std::filesystem::create_directories(path, code);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,11 +14,6 @@ Result<std::string> read_file(const std::string& path);
 /// Puts `contents` into `path` as a whole or not at all: writes a temporary file beside it, syncs it and renames it
 /// over `path`.
 std::optional<Error> write_file(const std::string& path, const std::string& contents);
-
-/// The same for a writer that makes files by itself: `write` makes the temporary file that it is given, which then
-/// becomes `path`.
-std::optional<Error> write_file_with(const std::string& path,
-                                     const std::function<std::optional<Error>(const std::string& temporary)>& write);
 
 /// Makes the directory (and its parents) where it is missing, and checks that files can be made in it: before hours of
 /// work, not after.

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "protocol/g2o.hpp"
-#include "protocol/gltf.hpp"
+#include "protocol/export/exports.hpp"
 #include "protocol/map_json.hpp"
 #include "protocol/tum.hpp"
 #include "tools/kinemap/files.hpp"
@@ -44,16 +43,12 @@ std::optional<Error> read_trajectory(const fs::path& directory, MapSnapshot& map
 
 }  // namespace
 
-std::optional<Error> write_map_files(const std::string& directory, const MapSnapshot& map, const graph::Graph& graph) {
-  const fs::path base(directory);
-  const auto write_graph = [&](const std::string& temporary) { return write_g2o(temporary, graph); };
-  if (auto error = write_file_with((base / "graph.g2o").string(), write_graph)) return error;
-  const std::pair<const char*, std::string> files[] = {{"trajectory.tum", optimised_tum(map)},
-                                                       {"odometry.tum", odometry_tum(map)},
-                                                       {"scene.glb", glb_bytes(map)},
-                                                       {"map.json", map_text(map)}};
-  for (const auto& [name, contents] : files)
-    if (auto error = write_file((base / name).string(), contents)) return error;
+std::optional<Error> write_map_files(const std::string& directory, const MapSnapshot& map) {
+  for (const Export& file : exports()) {
+    const auto bytes = export_map(file, map);
+    if (!bytes) return Error{bytes.error()};
+    if (auto error = write_file((fs::path(directory) / file.name).string(), *bytes)) return error;
+  }
   return std::nullopt;
 }
 

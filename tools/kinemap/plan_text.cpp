@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/kinemap/plan_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "tools/kinemap/plan.hpp"
 #include "tools/kinemap/text_table.hpp"
 
 namespace kinemap::cli {
@@ -105,6 +106,7 @@ struct Scale {
 };
 
 void draw_item(const Plan::Item& item, const Scale& scale, Canvas& canvas) {
+  if (item.type == ObjectType::Wall) return;  // its stretches are drawn, with the doorways open
   const Ink ink = ink_of(item.type);
   for (std::size_t i = 1; i < item.outline.size(); ++i)
     canvas.line(scale(item.outline[i - 1]), scale(item.outline[i]), ink);
@@ -138,9 +140,10 @@ std::string plan_text(const Plan& plan, int columns, int rows, bool colour) {
     const Eigen::Vector2d p = scale(plan.path[i]);
     canvas.dot(static_cast<int>(p.x()), static_cast<int>(p.y()), Ink::Path);
   }
+  for (const WallStretch& wall : plan.walls)
+    if (!wall.open && wall.wall_id) canvas.line(scale(wall.a), scale(wall.b), Ink::Wall);
   for (const Plan::Item& item : plan.items) draw_item(item, scale, canvas);
-  for (const Plan::Item& item : plan.items)
-    canvas.label(scale(item.centre), plan_letter(item.type) + std::to_string(item.id), ink_of(item.type));
+  for (const Plan::Item& item : plan.items) canvas.label(scale(item.centre), item.name(), ink_of(item.type));
   const std::string key = std::string("W wall  T table  S screen  C chair") + (plan.path.empty() ? "" : "  ⠂⠐ path");
   const std::string bar = scale_bar(dots_per_m);
   const bool beside = display_width(bar) + 3 + display_width(key) <= static_cast<std::size_t>(columns);

@@ -2,8 +2,6 @@
 #include "tools/kinemap/text_table.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <iterator>
 
 namespace kinemap::cli {
@@ -29,17 +27,6 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows, const 
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + '\n';
   }
-  return text;
-}
-
-std::string format(const char* pattern, ...) {
-  va_list arguments, again;
-  va_start(arguments, pattern);
-  va_copy(again, arguments);
-  std::string text(static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, pattern, arguments))), '\0');
-  std::vsnprintf(text.data(), text.size() + 1, pattern, again);
-  va_end(again);
-  va_end(arguments);
   return text;
 }
 

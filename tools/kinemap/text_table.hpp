@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "protocol/text_format.hpp"
+
 namespace kinemap::cli {
 
 /// Rows of cells in columns as wide as their widest cell; the first row is the heading. Columns named in `left` (by
@@ -12,9 +14,6 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows, const 
 
 /// Code points in a UTF-8 text.
 std::size_t display_width(const std::string& text);
-
-/// printf to a string.
-[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 /// 1234567 → "1,234,567".
 std::string grouped(unsigned long long number);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/kinemap/plan.hpp"
+#include "protocol/export/plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "tools/kinemap/text_table.hpp"
+#include "protocol/text_format.hpp"
 
-namespace kinemap::cli {
+namespace kinemap {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -37,18 +37,22 @@ std::string size_label(const MapObject& object) {
   return format("%.2f × %.2f m", (*object.size)[0], (*object.size)[1]);
 }
 
-/// An upright rectangle from above: its two outermost corners.
-std::vector<Eigen::Vector2d> stroke_of(const MapObject& object) {
-  const Eigen::Vector2d along(-object.plane->normal.y(), object.plane->normal.x());
-  const auto before = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return along.dot(a.head<2>()) < along.dot(b.head<2>());
-  };
-  const auto [a, b] = std::minmax_element(object.corners->begin(), object.corners->end(), before);
-  return {a->head<2>(), b->head<2>()};
+/// "wall 3, 4.84 × 2.50 m (height assumed), ± 0.09 m, seen 4 times, for bound"
+std::string detail_of(const MapObject& object) {
+  std::string text = format("%s %u", to_string(object.type), object.id);
+  if (object.size) text += format(", %.2f × %.2f m", (*object.size)[0], (*object.size)[1]);
+  if (object.height_assumed) text += " (height assumed)";
+  if (object.type == ObjectType::Chair || object.type == ObjectType::Table)
+    text += format(", %.2f m high", object.pose.p.z());
+  if (object.sigma.position_m > 0.0) text += format(", ± %.2f m", object.sigma.position_m);
+  text += format(", seen %d time%s", object.observations, object.observations == 1 ? "" : "s");
+  for (const std::string& function : object.functions) text += ", for " + function;
+  return text;
 }
 
 Plan::Item item_of(const MapObject& object) {
-  Plan::Item item{object.type, object.id, {}, object.pose.p.head<2>(), Eigen::Vector2d::Zero(), size_label(object)};
+  Plan::Item item{object.type,        object.id,        {}, object.pose.p.head<2>(), Eigen::Vector2d::Zero(),
+                  size_label(object), detail_of(object)};
   if (object.type == ObjectType::Chair) {
     const double heading = heading_of(object.pose.q);
     item.front = {std::cos(heading), std::sin(heading)};
@@ -58,7 +62,8 @@ Plan::Item item_of(const MapObject& object) {
     for (const Eigen::Vector3d& corner : *object.corners) item.outline.emplace_back(corner.head<2>());
   } else {
     item.front = object.plane->normal.head<2>().normalized();
-    item.outline = stroke_of(object);
+    const auto [a, b] = ends_of(object);
+    item.outline = {a, b};
   }
   return item;
 }
@@ -70,8 +75,12 @@ void turn(Plan& plan, double angle) {
     item.centre = turned(item.centre, angle);
     item.front = turned(item.front, angle);
   }
-  for (auto& room : plan.rooms)
-    for (Eigen::Vector2d& p : room) p = turned(p, angle);
+  for (WallStretch& wall : plan.walls) {
+    wall.a = turned(wall.a, angle);
+    wall.b = turned(wall.b, angle);
+  }
+  for (Plan::Floor& room : plan.rooms)
+    for (Eigen::Vector2d& p : room.polygon) p = turned(p, angle);
   for (Eigen::Vector2d& p : plan.path) p = turned(p, angle);
 }
 
@@ -84,14 +93,14 @@ void measure(Plan& plan) {
   };
   for (const Plan::Item& item : plan.items)
     for (const Eigen::Vector2d& p : item.outline) take(p);
-  for (const auto& room : plan.rooms)
-    for (const Eigen::Vector2d& p : room) take(p);
+  for (const Plan::Floor& room : plan.rooms)
+    for (const Eigen::Vector2d& p : room.polygon) take(p);
   for (const Eigen::Vector2d& p : plan.path) take(p);
 }
 
 }  // namespace
 
-char plan_letter(ObjectType type) { return "WTSC"[static_cast<std::size_t>(type)]; }
+std::string Plan::Item::name() const { return "WTSC"[static_cast<std::size_t>(type)] + std::to_string(id); }
 
 Plan make_plan(const MapSnapshot& map) {
   Plan plan;
@@ -100,10 +109,9 @@ Plan make_plan(const MapSnapshot& map) {
   // Seen from above: what stands on a table is drawn after it.
   std::stable_partition(plan.items.begin(), plan.items.end(),
                         [](const Plan::Item& item) { return item.type == ObjectType::Table; });
-  for (const Room& room : map.rooms) {
-    plan.rooms.push_back(room.polygon);
-    plan.room_labels.push_back(format("%.1f m²", room.area_m2));
-  }
+  plan.walls = wall_stretches(map);
+  plan.revision = map.revision;
+  for (const Room& room : map.rooms) plan.rooms.push_back({room.id, room.polygon, room.area_m2});
   for (const TrajectoryPose& pose : map.trajectory) plan.path.emplace_back(pose.T_map_pelvis.p.head<2>());
 
   turn(plan, -main_heading(map));
@@ -115,4 +123,4 @@ Plan make_plan(const MapSnapshot& map) {
   return plan;
 }
 
-}  // namespace kinemap::cli
+}  // namespace kinemap

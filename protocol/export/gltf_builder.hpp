@@ -30,15 +30,14 @@ class Builder {
   Builder();
   /// Red, green, blue, opacity, each 0–1 (linear). Returns the material's index.
   int add_material(const std::string& name, const std::array<double, 4>& colour);
+  /// A node with its mesh; an empty mesh gives a node without one.
   void add_node(const std::string& name, const Mesh& mesh, int material, nlohmann::ordered_json extras = nullptr);
-  void add_line(const std::string& name, const Mesh& points, int material);
   [[nodiscard]] std::string bytes() const;
 
  private:
   int add_accessor(const std::vector<Eigen::Vector3f>& vectors, bool bounds);
   int add_indices(const std::vector<std::uint32_t>& indices);
   int add_view(const void* data, std::size_t size, int target);
-  void add(const std::string& name, nlohmann::ordered_json primitive, nlohmann::ordered_json extras);
 
   nlohmann::ordered_json json_;
   std::string binary_;

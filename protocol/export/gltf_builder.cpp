@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/gltf_builder.hpp"
+#include "protocol/export/gltf_builder.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -73,24 +73,19 @@ int Builder::add_material(const std::string& name, const std::array<double, 4>& 
 }
 
 void Builder::add_node(const std::string& name, const Mesh& mesh, int material, Json extras) {
-  Json attributes = {{"POSITION", add_accessor(mesh.positions, true)}, {"NORMAL", add_accessor(mesh.normals, false)}};
-  add(name,
-      {{"attributes", std::move(attributes)},
-       {"indices", add_indices(mesh.indices)},
-       {"material", material},
-       {"mode", kTriangles}},
-      std::move(extras));
-}
-
-void Builder::add_line(const std::string& name, const Mesh& points, int material) {
-  Json attributes = {{"POSITION", add_accessor(points.positions, true)}};
-  add(name, {{"attributes", std::move(attributes)}, {"material", material}, {"mode", kLineStrip}}, nullptr);
-}
-
-void Builder::add(const std::string& name, Json primitive, Json extras) {
-  Json node = {{"name", name}, {"mesh", json_["meshes"].size()}};
+  Json node = {{"name", name}};
+  if (!mesh.positions.empty()) {
+    Json attributes = {{"POSITION", add_accessor(mesh.positions, true)}};
+    if (!mesh.normals.empty()) attributes["NORMAL"] = add_accessor(mesh.normals, false);
+    Json primitive = {{"attributes", std::move(attributes)}, {"material", material}, {"mode", kLineStrip}};
+    if (!mesh.indices.empty()) {
+      primitive["indices"] = add_indices(mesh.indices);
+      primitive["mode"] = kTriangles;
+    }
+    node["mesh"] = json_["meshes"].size();
+    json_["meshes"].push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
+  }
   if (!extras.is_null()) node["extras"] = std::move(extras);
-  json_["meshes"].push_back({{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
   json_["nodes"][0]["children"].push_back(json_["nodes"].size());
   json_["nodes"].push_back(std::move(node));
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/gltf.hpp"
+#include "protocol/export/gltf.hpp"
 
 #include <algorithm>
 
+#include "protocol/export/gltf_builder.hpp"
+#include "protocol/export/walls.hpp"
 #include "protocol/floor.hpp"
-#include "protocol/gltf_builder.hpp"
 #include "protocol/map_json.hpp"
 #include "protocol/triangulate.hpp"
 
@@ -22,6 +23,13 @@ std::vector<Eigen::Vector3d> level_rectangle(const Pose& pose, double half_x, do
           pose * Eigen::Vector3d(-half_x, -half_y, 0), pose * Eigen::Vector3d(half_x, -half_y, 0)};
 }
 
+void append(Mesh& mesh, const Mesh& part) {
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+  mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
+  for (const std::uint32_t i : part.indices) mesh.indices.push_back(base + i);
+}
+
 /// A seat with a back rest behind the sitter.
 Mesh seat_mesh(const Pose& pose) {
   const double half = kSeatSide / 2;
@@ -29,11 +37,21 @@ Mesh seat_mesh(const Pose& pose) {
   const std::vector<Eigen::Vector3d> back = {
       pose * Eigen::Vector3d(-half, -half, 0), pose * Eigen::Vector3d(-half, half, 0),
       pose * Eigen::Vector3d(-half, half, kBackHeight), pose * Eigen::Vector3d(-half, -half, kBackHeight)};
-  const Mesh rest = gltf::slab(back, pose.q * Eigen::Vector3d::UnitX(), kSlab);
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), rest.positions.begin(), rest.positions.end());
-  mesh.normals.insert(mesh.normals.end(), rest.normals.begin(), rest.normals.end());
-  for (const std::uint32_t i : rest.indices) mesh.indices.push_back(base + i);
+  append(mesh, gltf::slab(back, pose.q * Eigen::Vector3d::UnitX(), kSlab));
+  return mesh;
+}
+
+/// What of a wall is left between its doorways.
+Mesh wall_mesh(const std::vector<WallStretch>& stretches, std::uint32_t id) {
+  Mesh mesh;
+  for (const WallStretch& wall : stretches) {
+    if (wall.wall_id != id || wall.open) continue;
+    const auto corner = [](const Eigen::Vector2d& p, double z) { return Eigen::Vector3d(p.x(), p.y(), z); };
+    const Eigen::Vector2d normal = wall.normal();
+    append(mesh, gltf::slab({corner(wall.b, wall.bottom_z), corner(wall.a, wall.bottom_z), corner(wall.a, wall.top_z),
+                             corner(wall.b, wall.top_z)},
+                            {normal.x(), normal.y(), 0.0}, kSlab));
+  }
   return mesh;
 }
 
@@ -56,6 +74,13 @@ Mesh floor_mesh(const Room& room, double z) {
   return mesh;
 }
 
+/// Empty where nothing is known of the object's extent.
+Mesh mesh_of(const MapObject& object, const std::vector<WallStretch>& walls) {
+  if (object.type == ObjectType::Chair) return seat_mesh(object.pose);
+  if (!object.plane || !object.corners) return {};
+  return object.type == ObjectType::Wall ? wall_mesh(walls, object.id) : planar_mesh(object);
+}
+
 }  // namespace
 
 std::string glb_bytes(const MapSnapshot& map) {
@@ -66,20 +91,18 @@ std::string glb_bytes(const MapSnapshot& map) {
   const int floor = builder.add_material("floor", {0.60, 0.58, 0.53, 1.0});
   const int path = builder.add_material("trajectory", {0.90, 0.25, 0.05, 1.0});
 
+  const std::vector<WallStretch> walls = wall_stretches(map);
   for (const Room& room : map.rooms)
     if (const Mesh mesh = floor_mesh(room, floor_height(map, &room)); !mesh.indices.empty())
       builder.add_node("room " + std::to_string(room.id), mesh, floor, to_json(room));
   for (const MapObject& object : map.objects) {
-    const bool planar = object.plane && object.corners;
-    if (!planar && object.type != ObjectType::Chair) continue;  // nothing is known of its extent
     const std::string name = std::string(to_string(object.type)) + " " + std::to_string(object.id);
-    builder.add_node(name, planar ? planar_mesh(object) : seat_mesh(object.pose),
-                     material[static_cast<std::size_t>(object.type)], to_json(object));
+    builder.add_node(name, mesh_of(object, walls), material[static_cast<std::size_t>(object.type)], to_json(object));
   }
   if (map.trajectory.size() >= 2) {
     Mesh line;
     for (const TrajectoryPose& pose : map.trajectory) line.positions.emplace_back(pose.T_map_pelvis.p.cast<float>());
-    builder.add_line("trajectory", line, path);
+    builder.add_node("trajectory", line, path);
   }
   return builder.bytes();
 }

@@ -24,7 +24,10 @@ packages=(
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
 if [[ $tests == yes ]]; then
-  packages+=(chromium) # the live page is tested in it
+  packages+=(
+    chromium                                                # the live page is tested in it
+    libsdformat-dev librsvg2-bin python3-pil python3-yaml   # exports are read with them
+  )
 fi
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -80,6 +83,7 @@ install_packages
 if [[ $tests == yes ]]; then
   npm_packages daemon/web all
   npm_packages tests/web all
+  npm_packages tests/export all
 else
   npm_packages daemon/web build
 fi

@@ -8,6 +8,7 @@
 #include "protocol/export/occupancy.hpp"
 #include "protocol/export/plan.hpp"
 #include "protocol/export/sdf.hpp"
+#include "protocol/foxglove/session.hpp"
 #include "protocol/g2o.hpp"
 #include "protocol/map_json.hpp"
 #include "protocol/tum.hpp"
@@ -29,6 +30,8 @@ constexpr Export kExports[] = {
     {"trajectory.tum", "text/plain; charset=utf-8", "optimised pelvis poses, t x y z qx qy qz qw", optimised_tum,
      Trajectory},
     {"odometry.tum", "text/plain; charset=utf-8", "the same poses as the suit gave them", odometry_tum, Trajectory},
+    {"session.mcap", "application/octet-stream", "recording for Foxglove and Lichtblick, the live channels",
+     foxglove::mcap_bytes, Trajectory},
     {"objects.csv", "text/csv; charset=utf-8", "table of the objects, RFC 4180", objects_csv},
     // The last one: where it is, all its companions are.
     {"map.json", "application/json", "the map with all that is known of each object", map_text},

@@ -18,6 +18,12 @@ constexpr double kSlab = 0.03;      ///< m: a suit that touches faces knows noth
 constexpr double kSeatSide = 0.42;  ///< m: nor of the shape of a seat; only where it is and which way it faces
 constexpr double kBackHeight = 0.4;
 
+const gltf::Material kMaterials[] = {{"wall", {0.75, 0.78, 0.82, 0.35}},
+                                     {"table", {0.55, 0.33, 0.14, 1.0}},
+                                     {"screen", {0.03, 0.09, 0.20, 1.0}},
+                                     {"chair", {0.12, 0.42, 0.25, 1.0}}};
+const gltf::Material kFloor{"floor", {0.60, 0.58, 0.53, 1.0}}, kPath{"trajectory", {0.90, 0.25, 0.05, 1.0}};
+
 std::vector<Eigen::Vector3d> level_rectangle(const Pose& pose, double half_x, double half_y) {
   return {pose * Eigen::Vector3d(half_x, half_y, 0), pose * Eigen::Vector3d(-half_x, half_y, 0),
           pose * Eigen::Vector3d(-half_x, -half_y, 0), pose * Eigen::Vector3d(half_x, -half_y, 0)};
@@ -85,24 +91,18 @@ Mesh mesh_of(const MapObject& object, const std::vector<WallStretch>& walls) {
 
 std::string glb_bytes(const MapSnapshot& map) {
   gltf::Builder builder;
-  const std::array<int, 4> material = {
-      builder.add_material("wall", {0.75, 0.78, 0.82, 0.35}), builder.add_material("table", {0.55, 0.33, 0.14, 1.0}),
-      builder.add_material("screen", {0.03, 0.09, 0.20, 1.0}), builder.add_material("chair", {0.12, 0.42, 0.25, 1.0})};
-  const int floor = builder.add_material("floor", {0.60, 0.58, 0.53, 1.0});
-  const int path = builder.add_material("trajectory", {0.90, 0.25, 0.05, 1.0});
-
   const std::vector<WallStretch> walls = wall_stretches(map);
   for (const Room& room : map.rooms)
     if (const Mesh mesh = floor_mesh(room, floor_height(map, &room)); !mesh.indices.empty())
-      builder.add_node("room " + std::to_string(room.id), mesh, floor, to_json(room));
+      builder.add_node("room " + std::to_string(room.id), mesh, kFloor, to_json(room));
   for (const MapObject& object : map.objects) {
     const std::string name = std::string(to_string(object.type)) + " " + std::to_string(object.id);
-    builder.add_node(name, mesh_of(object, walls), material[static_cast<std::size_t>(object.type)], to_json(object));
+    builder.add_node(name, mesh_of(object, walls), kMaterials[static_cast<std::size_t>(object.type)], to_json(object));
   }
   if (map.trajectory.size() >= 2) {
     Mesh line;
     for (const TrajectoryPose& pose : map.trajectory) line.positions.emplace_back(pose.T_map_pelvis.p.cast<float>());
-    builder.add_node("trajectory", line, path);
+    builder.add_node("trajectory", line, kPath);
   }
   return builder.bytes();
 }

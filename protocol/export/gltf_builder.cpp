@@ -62,22 +62,25 @@ Builder::Builder() {
       {{{"name", "map (z up)"}, {"rotation", Json::array({-s, 0.0, 0.0, s})}, {"children", Json::array()}}});
 }
 
-int Builder::add_material(const std::string& name, const std::array<double, 4>& colour) {
-  Json material = {
-      {"name", name},
-      {"pbrMetallicRoughness", {{"baseColorFactor", colour}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}},
-      {"doubleSided", true}};
-  if (colour[3] < 1.0) material["alphaMode"] = "BLEND";
-  json_["materials"].push_back(std::move(material));
-  return static_cast<int>(json_["materials"].size()) - 1;
+std::size_t Builder::index_of(const Material& material) {
+  Json& materials = json_["materials"];
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    if (materials[i]["name"] == material.name) return i;
+  Json json = {{"name", material.name},
+               {"pbrMetallicRoughness",
+                {{"baseColorFactor", material.colour}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}},
+               {"doubleSided", true}};
+  if (material.colour[3] < 1.0) json["alphaMode"] = "BLEND";
+  materials.push_back(std::move(json));
+  return materials.size() - 1;
 }
 
-void Builder::add_node(const std::string& name, const Mesh& mesh, int material, Json extras) {
+void Builder::add_node(const std::string& name, const Mesh& mesh, const Material& material, Json extras) {
   Json node = {{"name", name}};
   if (!mesh.positions.empty()) {
     Json attributes = {{"POSITION", add_accessor(mesh.positions, true)}};
     if (!mesh.normals.empty()) attributes["NORMAL"] = add_accessor(mesh.normals, false);
-    Json primitive = {{"attributes", std::move(attributes)}, {"material", material}, {"mode", kLineStrip}};
+    Json primitive = {{"attributes", std::move(attributes)}, {"material", index_of(material)}, {"mode", kLineStrip}};
     if (!mesh.indices.empty()) {
       primitive["indices"] = add_indices(mesh.indices);
       primitive["mode"] = kTriangles;

@@ -20,6 +20,11 @@ struct Mesh {
   void add_face(const std::vector<Eigen::Vector3d>& corners, const Eigen::Vector3d& normal);
 };
 
+struct Material {
+  std::string name;              ///< the same name is the same material
+  std::array<double, 4> colour;  ///< red, green, blue, opacity, each 0–1 (linear)
+};
+
 /// The slab over a convex outline `top` (counter-clockwise when seen from `normal`, unit), `thickness` m deep against
 /// the normal.
 Mesh slab(const std::vector<Eigen::Vector3d>& top, const Eigen::Vector3d& normal, double thickness);
@@ -28,13 +33,13 @@ Mesh slab(const std::vector<Eigen::Vector3d>& top, const Eigen::Vector3d& normal
 class Builder {
  public:
   Builder();
-  /// Red, green, blue, opacity, each 0–1 (linear). Returns the material's index.
-  int add_material(const std::string& name, const std::array<double, 4>& colour);
   /// A node with its mesh; an empty mesh gives a node without one.
-  void add_node(const std::string& name, const Mesh& mesh, int material, nlohmann::ordered_json extras = nullptr);
+  void add_node(const std::string& name, const Mesh& mesh, const Material& material,
+                nlohmann::ordered_json extras = nullptr);
   [[nodiscard]] std::string bytes() const;
 
  private:
+  std::size_t index_of(const Material& material);
   int add_accessor(const std::vector<Eigen::Vector3f>& vectors, bool bounds);
   int add_indices(const std::vector<std::uint32_t>& indices);
   int add_view(const void* data, std::size_t size, int target);

@@ -150,6 +150,7 @@ Answer query_trajectory(const MapSnapshot& map, const Params& params) {
     if (pose.time_s < since || pose.time_s > until) continue;
     Json json = {{"id", pose.id}, {"time", rounded(pose.time_s)}};
     json.update(to_json(pose.T_map_pelvis));
+    json["odometry"] = to_json(pose.T_odom_pelvis);
     poses.push_back(std::move(json));
   }
   return text_of({{"revision", map.revision}, {"frame", "map"}, {"poses", std::move(poses)}});

@@ -160,6 +160,7 @@ TEST(QueryTrajectory, SinceAndUntilAreInclusive) {
   EXPECT_EQ(times({{"since", "2"}, {"until", "6"}}), (std::vector<double>{2, 4, 6}));
   EXPECT_EQ(times({{"since", "8.5"}}), std::vector<double>{});
   const auto first = value_of(query_trajectory(sample_map(), {{"since", "4"}}))["poses"][0];
+  EXPECT_NEAR(first["odometry"]["position"][0].get<double>(), 2.2, 1e-9);
   EXPECT_EQ(first["position"], (Json{2.0, 0.0, 1.0}));  // T_map_pelvis, not odometry
   EXPECT_EQ(error_of(query_trajectory(sample_map(), {{"since", "soon"}})).status, 400U);
 }

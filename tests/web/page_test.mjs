@@ -101,9 +101,14 @@ test("the map grows while the wearer walks", () =>
     const map = await daemon.get("api/v1/map");
     assert.ok(map.rooms.length > 0 && map.objects.length > 4);
     await until(async () => (await listed(page)) === map.objects.length, "all objects in the list");
-    await page.locator(".room-name", { hasText: `Room ${map.rooms[0].id}` }).waitFor();
-    assert.match(await page.locator(".room-area").first().textContent(), new RegExp(`${map.rooms[0].area.toFixed(1)} m²`));
+    const room = page.locator(".name-room", { hasText: `Room ${map.rooms[0].id}` });
+    await room.waitFor();
+    assert.match(await room.textContent(), new RegExp(`${map.rooms[0].area.toFixed(1)} m²`));
     await page.getByText("Suit silent").first().waitFor();
+    assert.equal((await page.locator(".wearer .bones").getAttribute("d")).match(/M/g).length, 14, "the skeleton");
+    const { poses } = await daemon.get("api/v1/trajectory");
+    for (const path of [".track:not(.raw)", ".track.raw"])
+      await until(async () => (await page.locator(path).getAttribute("points")).split(" ").length === poses.length, `all of ${path}`);
     assert.deepEqual(complaints, []);
   }));
 

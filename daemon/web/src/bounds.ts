@@ -25,3 +25,5 @@ export function boundsOf(map: MapDocument, track: TrackPose[], wearer?: readonly
   }
   return bounds;
 }
+
+export const holds = ({ min, max }: Bounds, [x = 0, y = 0]: readonly number[]) => x >= min[0] && x <= max[0] && y >= min[1] && y <= max[1];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { MapObject, Pose } from "./model";
 
-const minus = (text: string) => text.replace("-", "\u2212");
+export const minus = (text: string) => text.replace("-", "\u2212");
 
 export const metres = (value: number, digits = 2) => `${minus(value.toFixed(digits))} m`;
 export const degrees = (radians: number, digits = 0) => `${minus(((radians * 180) / Math.PI).toFixed(digits))}°`;

@@ -3,14 +3,12 @@
 import type { PoseNews, Vec3 } from "./model";
 import { heading } from "./format";
 
-export const kSegments = 23;
-
 export interface WearerSample {
   /** Pelvis, map frame. */
   position: Vec3;
   heading: number;
-  /** Origins of the 23 segments in stream order, map frame; absent when the daemon sends only the pelvis. */
-  joints?: Vec3[];
+  /** Origins of the 23 segments in stream order, map frame. */
+  joints: Vec3[];
 }
 
 const between = (a: number, b: number, part: number) => a + (b - a) * part;
@@ -22,11 +20,10 @@ const mix = (a: Vec3, b: Vec3, part: number): Vec3 => [
 ];
 
 function blend(a: WearerSample, b: WearerSample, part: number): WearerSample {
-  const from = a.joints;
   return {
     position: mix(a.position, b.position, part),
     heading: a.heading + turn(a.heading, b.heading) * part,
-    joints: from ? b.joints?.map((joint, i) => mix(from[i] ?? joint, joint, part)) : b.joints,
+    joints: b.joints.map((joint, i) => mix(a.joints[i] ?? joint, joint, part)),
   };
 }
 
@@ -50,7 +47,7 @@ export class Wearer {
     this.at = now;
     for (const listener of this.listeners) listener();
   }
-  pushPose(news: PoseNews): void {
+  drifted(news: PoseNews): void {
     if (!news.odometry) return;
     const [x, y, z] = news.position;
     const raw = news.odometry.position;

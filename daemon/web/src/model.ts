@@ -45,12 +45,37 @@ export interface Doorway {
 
 export interface MapDocument {
   revision: number;
+  /** Tells this run of the daemon from others. */
+  run?: string;
   time: number;
   objects: MapObject[];
   rooms: Room[];
   doorways?: Doorway[];
   correction?: Pose;
   graph?: { loop_closures: number; loop_closures_revoked: number; key_poses: number };
+}
+
+/** What changed since another revision: of lists with ids only what is new or changed. */
+export interface MapDelta extends Partial<MapDocument> {
+  revision: number;
+  since: number;
+  removed?: { objects: number[]; rooms: number[] };
+}
+
+/** Of each segment x, y, z, then w, x, y, z. */
+export interface BodyNews {
+  time: number;
+  segments: number[][];
+}
+
+export interface LiveEvent {
+  number: number;
+  event: string;
+  time: number;
+  message: string;
+  object?: number;
+  objects?: number[];
+  type?: string;
 }
 
 export interface PoseNews extends Pose {

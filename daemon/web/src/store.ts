@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useEffect, useState } from "preact/hooks";
+import type { Happening } from "./events";
 import type { MapDocument, Status, TrackPose } from "./model";
 
 export type LinkPhase = "connecting" | "open" | "lost";
@@ -12,15 +13,6 @@ export interface Link {
   retryAt?: number;
 }
 
-export interface EventItem {
-  key: string;
-  /** Seconds of stream time; events of the link itself have none. */
-  time?: number;
-  kind: "found" | "visit" | "trace" | "loop" | "warning" | "link";
-  text: string;
-  object?: number;
-}
-
 export type View = "3d" | "plan";
 
 /** All that the page shows, but for what changes at frame rate (live.ts). Replaced, never changed in place. */
@@ -30,7 +22,7 @@ export interface State {
   track: TrackPose[];
   status?: Status;
   /** Newest first. */
-  events: EventItem[];
+  events: Happening[];
   selected?: number;
   view: View;
   /** Why there is no 3-D view, when there is none. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the plan writes lengths: one dimension line along each side of a room that says something new.
-import type { MapObject, Room, Vec2 } from "../model";
+import type { MapDocument, MapObject, Room, Vec2 } from "../model";
 
 export interface Dimension {
   from: Vec2;
@@ -13,6 +13,8 @@ export interface Dimension {
 const kShortest = 0.5; // m: shorter sides have no room for a number
 const kSameLength = 0.03; // m: opposite sides that agree are written once
 const kParallel = 0.1; // rad
+const kReadable = 58; // px: shorter lines have no room for a number
+export const kGap = 15; // px between a side and its dimension line
 
 function sideOf(from: Vec2, to: Vec2): Dimension {
   const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
@@ -23,7 +25,7 @@ function sideOf(from: Vec2, to: Vec2): Dimension {
 const parallel = (a: Dimension, b: Dimension) => Math.abs(a.inward[0] * b.inward[1] - a.inward[1] * b.inward[0]) < kParallel;
 
 /** Of a room, whose corners go counter-clockwise. */
-export function roomDimensions(room: Room): Dimension[] {
+function roomDimensions(room: Room): Dimension[] {
   const sides = room.polygon.map((corner, i) => sideOf(corner, room.polygon[(i + 1) % room.polygon.length] ?? corner));
   const kept: Dimension[] = [];
   for (const side of sides) {
@@ -35,7 +37,7 @@ export function roomDimensions(room: Room): Dimension[] {
 }
 
 /** Of a wall that belongs to no room yet: on the side that was touched. */
-export function wallDimension(wall: MapObject): Dimension | undefined {
+function wallDimension(wall: MapObject): Dimension | undefined {
   const foot = footOf(wall);
   if (!foot || !wall.plane) return undefined;
   const side = sideOf(...foot);
@@ -52,3 +54,13 @@ export function footOf(object: MapObject): [Vec2, Vec2] | undefined {
   const [a, b] = [...corners].sort((p, q) => p[2] - q[2]);
   return a && b ? [[a[0], a[1]], [b[0], b[1]]] : undefined;
 }
+
+/** Of all rooms, and of the walls that are in none. */
+export function allDimensions(map: MapDocument): Dimension[] {
+  const inRooms = new Set(map.rooms.flatMap(({ walls }) => walls));
+  const loose = map.objects.filter(({ id, type }) => type === "wall" && !inRooms.has(id));
+  return [...map.rooms.flatMap(roomDimensions), ...loose.flatMap((wall) => wallDimension(wall) ?? [])];
+}
+
+/** Whether a dimension can be read at so many px a metre. */
+export const readable = ({ length }: Dimension, scale: number) => length * scale >= kReadable;

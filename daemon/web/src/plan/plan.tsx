@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The floor plan from above, as SVG: needs no WebGL, stays sharp, and its objects can be reached by keyboard.
 import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
-import { boundsOf } from "../bounds";
+import { type Bounds, boundsOf, holds } from "../bounds";
 import { heading, metres, objectName, shortSize } from "../format";
 import type { Wearer } from "../live";
 import type { MapDocument, MapObject, Room, TrackPose, Vec2, Vec3 } from "../model";
-import { type Dimension, footOf, roomDimensions, wallDimension } from "./dimensions";
+import { allDimensions, type Dimension, footOf, kGap, readable } from "./dimensions";
+import { kLineHeight, type Label, placeLabels } from "./labels";
 import { fitView, listenToGestures, type PlanView, zoomed } from "./view";
 
 interface Props {
@@ -26,8 +27,7 @@ const points = (list: (readonly number[])[]) => list.map(([x = 0, y = 0]) => `${
 
 function Sided({ dimension, scale }: { dimension: Dimension; scale: number }) {
   const { from, to, inward, length } = dimension;
-  if (length * scale < 46) return null; // no room for the number
-  const gap = 15 / scale;
+  const gap = kGap / scale;
   const tick = 4 / scale;
   const a: Vec2 = [from[0] + inward[0] * gap, from[1] + inward[1] * gap];
   const b: Vec2 = [to[0] + inward[0] * gap, to[1] + inward[1] * gap];
@@ -53,27 +53,17 @@ function Sided({ dimension, scale }: { dimension: Dimension; scale: number }) {
   );
 }
 
-function RoomShape({ room, scale }: { room: Room; scale: number }) {
+function RoomShape({ room }: { room: Room }) {
   const n = room.polygon.length;
-  const [x, y] = room.polygon.reduce<Vec2>((sum, p) => [sum[0] + p[0] / n, sum[1] + p[1] / n], [0, 0]);
   return (
     <g>
       <polygon class="room" points={points(room.polygon)} />
       {(room.inferred_sides ?? []).map((side) => (
         <polyline class="inferred" points={points([room.polygon[side] ?? [], room.polygon[(side + 1) % n] ?? []])} />
       ))}
-      <text class="room-name" x={x} y={-y}>
-        {`Room ${room.id}`}
-        <tspan x={x} dy="1.25em" class="room-area">{`${room.area.toFixed(1)} m²`}</tspan>
-      </text>
-      {roomDimensions(room).map((dimension) => (
-        <Sided dimension={dimension} scale={scale} />
-      ))}
     </g>
   );
 }
-
-const polar = (x: number, y: number, angle: number, r: number): Vec2 => [x + Math.cos(angle) * r, y + Math.sin(angle) * r];
 
 function Shape({ object }: { object: MapObject }) {
   const [x, y] = object.pose.position;
@@ -100,21 +90,16 @@ function Target({ object }: { object: MapObject }) {
   return foot ? <polyline class="target" points={points(foot)} /> : null;
 }
 
-function Labelled({ object, scale, selected }: { object: MapObject; scale: number; selected: boolean }) {
-  const [x, y] = object.pose.position;
-  const long = object.size?.[0] ?? 0.42;
-  if (object.type === "wall" ? !selected : !selected && long * scale < 34) return null;
-  // Screens and seats carry their names beside them.
-  const level = object.plane && Math.abs(object.plane.normal[2]) > 0.5;
-  const [lx, ly] = level ? [x, y] : polar(x, y, heading(object.pose) + (object.type === "chair" ? Math.PI : 0), (object.type === "chair" ? 0.21 : 0) + 13 / scale);
+function Name({ label: { kind, lines, at }, scale }: { label: Label; scale: number }) {
+  const [x, y] = [at[0] / scale, at[1] / scale];
+  const step = kLineHeight[kind] / scale;
   return (
-    <text class={`name${selected ? " selected" : ""}`} x={lx} y={-ly} dy={level ? "-0.1em" : "0.35em"}>
-      {objectName(object)}
-      {level && (
-        <tspan x={lx} dy="1.15em" class="size">
-          {shortSize(object)}
+    <text class={`name name-${kind}`}>
+      {lines.map((line, i) => (
+        <tspan x={x} y={y + (i - (lines.length - 1) / 2) * step} dy="0.35em">
+          {line}
         </tspan>
-      )}
+      ))}
     </text>
   );
 }
@@ -187,7 +172,7 @@ function LiveWearer({ wearer, onMove }: { wearer: Wearer; onMove: (position: Vec
       const [x, y] = sample.position;
       dot?.setAttribute("transform", `translate(${x} ${-y})`);
       arrow?.setAttribute("transform", `translate(${x} ${-y}) rotate(${(-sample.heading * 180) / Math.PI})`);
-      bones?.setAttribute("d", sample.joints ? bonesPath(sample.joints) : "");
+      bones?.setAttribute("d", bonesPath(sample.joints));
       onMove(sample.position);
       if (wearer.moving(now)) request();
     };
@@ -235,6 +220,9 @@ export function Plan({ map, track, wearer, selected, follow, fits, zooms, onSele
   const following = useRef(follow);
   following.current = follow;
   const moved = useRef(zooms);
+  const pressed = useRef({ x: 0, y: 0 });
+  const framed = useRef<Bounds | undefined>(undefined);
+  const [outings, setOutings] = useState(0); // how often the wearer has left what was in view
 
   useLayoutEffect(() => {
     const element = svg.current;
@@ -261,11 +249,16 @@ export function Plan({ map, track, wearer, selected, follow, fits, zooms, onSele
     setView((v) => zoomed(v, factor));
   }, [zooms]);
   useLayoutEffect(() => {
-    if (auto && !follow && size.width > 0)
-      setView(fitView(boundsOf(map, track, wearer.shown(performance.now())?.position), size.width, size.height));
-  }, [auto, follow, map, track, size.width, size.height]);
-  const followMove = (position: Vec3) => {
+    if (!auto || follow || size.width === 0) return;
+    framed.current = boundsOf(map, track, wearer.shown(performance.now())?.position);
+    setView(fitView(framed.current, size.width, size.height));
+  }, [auto, follow, map, track, size.width, size.height, outings]);
+  const wearerMoved = (position: Vec3) => {
     if (following.current) setView((v) => ({ ...v, x: position[0], y: position[1] }));
+    else if (framed.current && !holds(framed.current, position)) {
+      framed.current = undefined; // once, until all is in view again
+      setOutings((n) => n + 1);
+    }
   };
 
   const keys = (event: KeyboardEvent) => {
@@ -288,7 +281,8 @@ export function Plan({ map, track, wearer, selected, follow, fits, zooms, onSele
   const { width, height } = size;
   const [w, h] = [Math.max(width, 1) / view.scale, Math.max(height, 1) / view.scale];
   const ordered = useMemo(() => inOrder(map.objects, selected), [map, selected]);
-  const inRooms = useMemo(() => new Set(map.rooms.flatMap((room) => room.walls)), [map]);
+  const dimensions = useMemo(() => allDimensions(map).filter((dimension) => readable(dimension, view.scale)), [map, view.scale]);
+  const labels = useMemo(() => placeLabels(map, dimensions, selected, view.scale), [map, dimensions, selected, view.scale]);
   return (
     <div class="plan">
       <svg
@@ -298,21 +292,26 @@ export function Plan({ map, track, wearer, selected, follow, fits, zooms, onSele
         aria-label="Floor plan from above. Arrow keys move it, plus and minus zoom."
         viewBox={`${view.x - w / 2} ${-view.y - h / 2} ${w} ${h}`}
         style={{ "--px": 1 / view.scale } as Record<string, number>}
+        onPointerDown={(event) => (pressed.current = { x: event.clientX, y: event.clientY })}
+        onClickCapture={(event) => {
+          // The end of a pull is no click.
+          const { x, y } = pressed.current;
+          if (Math.hypot(event.clientX - x, event.clientY - y) > 5) event.stopPropagation();
+        }}
         onClick={() => onSelect(undefined)}
         onKeyDown={keys}
       >
         <Grid view={view} width={width} height={height} />
         {map.rooms.map((room) => (
-          <RoomShape key={room.id} room={room} scale={view.scale} />
+          <RoomShape key={room.id} room={room} />
         ))}
         <Tracks track={track} />
         {ordered.map((object) => (
           <ObjectShape key={object.id} object={object} selected={object.id === selected} onSelect={onSelect} />
         ))}
-        {map.objects.map((object) => {
-          const dimension = object.type === "wall" && !inRooms.has(object.id) ? wallDimension(object) : undefined;
-          return dimension && <Sided key={object.id} dimension={dimension} scale={view.scale} />;
-        })}
+        {dimensions.map((dimension) => (
+          <Sided dimension={dimension} scale={view.scale} />
+        ))}
         {(map.doorways ?? []).map((door) => (
           <g class="doorway" transform={`translate(${door.position[0]} ${-door.position[1]}) rotate(${(-door.heading * 180) / Math.PI})`}>
             <title>Doorway: the wearer walked through here; its width is not known</title>
@@ -320,9 +319,9 @@ export function Plan({ map, track, wearer, selected, follow, fits, zooms, onSele
             <path d="M-0.34 0H0.34M-0.24 -0.08L-0.34 0L-0.24 0.08M0.24 -0.08L0.34 0L0.24 0.08" />
           </g>
         ))}
-        <LiveWearer wearer={wearer} onMove={followMove} />
-        {ordered.map((object) => (
-          <Labelled key={object.id} object={object} scale={view.scale} selected={object.id === selected} />
+        <LiveWearer wearer={wearer} onMove={wearerMoved} />
+        {labels.map((label) => (
+          <Name key={label.key} label={label} scale={view.scale} />
         ))}
       </svg>
       <ScaleBar scale={view.scale} />

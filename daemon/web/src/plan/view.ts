@@ -16,7 +16,7 @@ const kMargin = 64; // px
 const limited = (scale: number) => Math.min(kMax, Math.max(kMin, scale));
 
 export function fitView({ min, max }: Bounds, width: number, height: number): PlanView {
-  const margin = Math.min(kMargin, width / 8, height / 8);
+  const margin = Math.min(kMargin, width / 16, height / 8);
   const scale = Math.min((width - 2 * margin) / (max[0] - min[0] + 0.3), (height - 2 * margin) / (max[1] - min[1] + 0.3));
   return { x: (min[0] + max[0]) / 2, y: (min[1] + max[1]) / 2, scale: Math.min(limited(scale), 160) };
 }

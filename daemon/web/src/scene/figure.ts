@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wearer: a capsule for each bone of the suit's 23 segments, or a marker at the pelvis when only that is known.
-import { CapsuleGeometry, ConeGeometry, Group, Mesh, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
+// The wearer: a capsule for each bone between the suit's 23 segments.
+import { CapsuleGeometry, Group, Mesh, MeshLambertMaterial, SphereGeometry, Vector3 } from "three";
 import type { WearerSample } from "../live";
 import type { Vec3 } from "../model";
 import type { Palette } from "./palette";
@@ -24,20 +24,13 @@ export class Figure {
   private bones: { mesh: Mesh; length: number }[] = [];
   private hands: Mesh[] = [];
   private head: Mesh;
-  private marker = new Group();
 
   constructor(palette: Palette) {
-    this.material = new MeshLambertMaterial({ color: palette.get("wearer"), fog: false });
+    this.material = new MeshLambertMaterial({ color: palette.get("wearer") });
     this.bones = kBones.map(() => ({ mesh: this.add(new Mesh(undefined, this.material)), length: -1 }));
     this.hands = kHandBones.map(() => this.add(new Mesh(new CapsuleGeometry(0.032, kHandLength - 0.06, 4, 10), this.material)));
     this.head = this.add(new Mesh(new SphereGeometry(kHeadRadius, 24, 18), this.material));
     this.head.scale.set(0.9, 0.85, 1.15);
-    const ball = new Mesh(new SphereGeometry(0.12, 24, 18), this.material);
-    const nose = new Mesh(new ConeGeometry(0.07, 0.2, 20), this.material);
-    nose.rotation.z = -Math.PI / 2;
-    nose.position.x = 0.2;
-    this.marker.add(ball, nose);
-    this.group.add(this.marker);
     this.group.visible = false;
   }
 
@@ -47,15 +40,7 @@ export class Figure {
 
   show(sample: WearerSample | undefined): void {
     this.group.visible = sample !== undefined;
-    if (!sample) return;
-    const { joints } = sample;
-    for (const { mesh } of this.bones) mesh.visible = joints !== undefined;
-    for (const hand of this.hands) hand.visible = joints !== undefined;
-    this.head.visible = joints !== undefined;
-    this.marker.visible = joints === undefined;
-    if (joints) this.pose(joints);
-    this.marker.position.set(...sample.position);
-    this.marker.rotation.z = sample.heading;
+    if (sample) this.pose(sample.joints);
   }
 
   private add(mesh: Mesh): Mesh {

@@ -61,7 +61,7 @@ function wall(object: MapObject, palette: Palette, selected: boolean): Group {
   geometry.setAttribute("color", new Float32BufferAttribute(fade, 4));
   geometry.setIndex(order);
   const panel = (side: typeof FrontSide | typeof BackSide, opacity: number) => {
-    const material = new MeshBasicMaterial({ vertexColors: true, transparent: true, opacity, side, depthWrite: false, fog: false });
+    const material = new MeshBasicMaterial({ vertexColors: true, transparent: true, opacity, side, depthWrite: false });
     return new Mesh(geometry, material);
   };
   const back = panel(BackSide, selected ? 0.16 : 0.07);
@@ -70,7 +70,7 @@ function wall(object: MapObject, palette: Palette, selected: boolean): Group {
 
   const foot = shape.corners.filter((corner) => corner.z <= lowest + 0.01);
   const head = shape.corners.filter((corner) => corner.z > lowest + 0.01);
-  const ink = (opacity: number) => new LineBasicMaterial({ color: colour, transparent: true, opacity, fog: false });
+  const ink = (opacity: number) => new LineBasicMaterial({ color: colour, transparent: true, opacity });
   group.add(lines(foot, ink(0.95)), lines(head, ink(object.height_assumed ? 0.22 : 0.7)));
   const posts = foot.flatMap((low) => {
     const high = head.find((corner) => Math.hypot(corner.x - low.x, corner.y - low.y) < 0.05);
@@ -96,14 +96,14 @@ function slab(object: MapObject, material: Material): { mesh: Mesh; shape: NonNu
 function table(object: MapObject, palette: Palette, selected: boolean, floor: number): Group {
   const group = new Group();
   const colour = selected ? palette.get("accent") : palette.type("table");
-  const made = slab(object, new MeshLambertMaterial({ color: colour, fog: false }));
+  const made = slab(object, new MeshLambertMaterial({ color: colour }));
   if (!made) return group;
   group.add(made.mesh);
   const legs = made.shape.corners.flatMap((corner) => {
     const inset = corner.clone().lerp(made.shape.centre, 0.08);
     return [new Vector3(inset.x, inset.y, corner.z - kSlab), new Vector3(inset.x, inset.y, floor)];
   });
-  group.add(lines(legs, new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.6, fog: false })));
+  group.add(lines(legs, new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.6 })));
   group.add(shadow(made.shape.corners.map((corner) => new Vector3(corner.x, corner.y, floor + 0.004)), palette));
   return group;
 }
@@ -112,7 +112,7 @@ function shadow(corners: Vector3[], palette: Palette): Mesh {
   const geometry = new BufferGeometry().setFromPoints(corners);
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
   const material = new MeshBasicMaterial({
-    color: palette.get("ink"), transparent: true, opacity: 0.1, side: DoubleSide, depthWrite: false, fog: false,
+    color: palette.get("ink"), transparent: true, opacity: 0.1, side: DoubleSide, depthWrite: false,
   });
   const mesh = new Mesh(geometry, material);
   mesh.raycast = () => {};
@@ -122,10 +122,10 @@ function shadow(corners: Vector3[], palette: Palette): Mesh {
 function screen(object: MapObject, palette: Palette, selected: boolean): Group {
   const group = new Group();
   const colour = selected ? palette.get("accent") : palette.type("screen");
-  const made = slab(object, new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.25, side: DoubleSide, fog: false }));
+  const made = slab(object, new MeshLambertMaterial({ color: colour, emissive: colour, emissiveIntensity: 0.25, side: DoubleSide }));
   if (!made) return group;
   const [a, b, c, d] = made.shape.corners;
-  group.add(made.mesh, lines([a, b, b, c, c, d, d, a], new LineBasicMaterial({ color: colour, fog: false })));
+  group.add(made.mesh, lines([a, b, b, c, c, d, d, a], new LineBasicMaterial({ color: colour })));
   return group;
 }
 
@@ -133,7 +133,7 @@ function screen(object: MapObject, palette: Palette, selected: boolean): Group {
 function seat(object: MapObject, palette: Palette, selected: boolean, floor: number): Group {
   const group = new Group();
   const colour = selected ? palette.get("accent") : palette.type("chair");
-  const material = new MeshLambertMaterial({ color: colour, fog: false });
+  const material = new MeshLambertMaterial({ color: colour });
   const pad = new Mesh(new RoundedBoxGeometry(kSeat, kSeat, 0.06, 3, 0.03), material);
   pad.position.z = -0.03;
   const back = new Mesh(new RoundedBoxGeometry(0.05, kSeat, 0.36, 3, 0.025), material);
@@ -144,7 +144,7 @@ function seat(object: MapObject, palette: Palette, selected: boolean, floor: num
     new Vector3(x, y, -0.06),
     new Vector3(x, y, drop),
   ]);
-  const ink = new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.6, fog: false });
+  const ink = new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.6 });
   const arrow = [[0.3, 0, 0.62, 0], [0.62, 0, 0.53, 0.07], [0.62, 0, 0.53, -0.07]].flatMap(([x0 = 0, y0 = 0, x1 = 0, y1 = 0]) => [
     new Vector3(x0, y0, drop + 0.01),
     new Vector3(x1, y1, drop + 0.01),
@@ -162,8 +162,8 @@ function seat(object: MapObject, palette: Palette, selected: boolean, floor: num
 function marker(object: MapObject, palette: Palette, selected: boolean): Group {
   const group = new Group();
   const colour = selected ? palette.get("accent") : palette.type(object.type);
-  const made = slab(object, new MeshLambertMaterial({ color: colour, fog: false }));
-  const mesh = made?.mesh ?? new Mesh(new RoundedBoxGeometry(0.3, 0.3, 0.3, 3, 0.05), new MeshLambertMaterial({ color: colour, fog: false }));
+  const made = slab(object, new MeshLambertMaterial({ color: colour }));
+  const mesh = made?.mesh ?? new Mesh(new RoundedBoxGeometry(0.3, 0.3, 0.3, 3, 0.05), new MeshLambertMaterial({ color: colour }));
   if (!made) mesh.position.copy(vector(object.pose.position));
   group.add(mesh);
   return group;

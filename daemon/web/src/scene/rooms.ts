@@ -12,32 +12,12 @@ import {
   Vector2,
   Vector3,
 } from "three";
-import type { MapDocument, Room, Vec2 } from "../model";
+import { floorAt, floorOf } from "../geometry";
+import type { MapDocument } from "../model";
 import type { Palette } from "./palette";
 
-/** The floor's height is that of the lowest corner of the room's walls. */
-export function floorOf(room: Room, map: MapDocument): number {
-  const heights = map.objects.filter((object) => room.walls.includes(object.id)).flatMap((wall) => wall.corners ?? []).map((c) => c[2]);
-  return heights.length > 0 ? Math.min(...heights) : 0;
-}
-
-function inside([x, y]: readonly number[], polygon: Vec2[]): boolean {
-  let odd = false;
-  polygon.forEach(([x1, y1], i) => {
-    const [x0, y0] = polygon[(i + polygon.length - 1) % polygon.length] ?? [x1, y1];
-    if (x !== undefined && y !== undefined && y1 > y !== y0 > y && x < ((x0 - x1) * (y - y1)) / (y0 - y1) + x1) odd = !odd;
-  });
-  return odd;
-}
-
-/** The height of the floor under a point: that of its room, or of the nearest thing known. */
-export function floorAt(point: readonly number[], map: MapDocument): number {
-  const room = map.rooms.find((candidate) => inside(point, candidate.polygon));
-  return room ? floorOf(room, map) : 0;
-}
-
 function dashed(points: Vector3[], palette: Palette): LineSegments {
-  const material = new LineDashedMaterial({ color: palette.type("wall"), dashSize: 0.12, gapSize: 0.1, fog: false });
+  const material = new LineDashedMaterial({ color: palette.type("wall"), dashSize: 0.12, gapSize: 0.1 });
   const segments = new LineSegments(new BufferGeometry().setFromPoints(points), material);
   segments.computeLineDistances();
   return segments;
@@ -49,7 +29,7 @@ export function roomsGroup(map: MapDocument, palette: Palette): Group {
   for (const room of map.rooms) {
     const floor = floorOf(room, map);
     const geometry = new ShapeGeometry(new Shape(room.polygon.map(([x, y]) => new Vector2(x, y))));
-    const mesh = new Mesh(geometry, new MeshBasicMaterial({ color: palette.get("floor"), fog: false }));
+    const mesh = new Mesh(geometry, new MeshBasicMaterial({ color: palette.get("floor") }));
     mesh.position.z = floor - 0.01;
     group.add(mesh);
     const sides = (room.inferred_sides ?? []).flatMap((side) => {
@@ -66,8 +46,8 @@ export function roomsGroup(map: MapDocument, palette: Palette): Group {
         ([u = 0, v = 0]) => new Vector3(u, v, 0),
       ),
     );
-    const mark = new LineSegments(arrow, new LineBasicMaterial({ color: palette.get("ink"), fog: false }));
-    mark.position.set(x, y, 0.02);
+    const mark = new LineSegments(arrow, new LineBasicMaterial({ color: palette.get("ink") }));
+    mark.position.set(x, y, floorAt(door.position, map) + 0.02);
     mark.rotation.z = door.heading;
     group.add(mark);
   }

@@ -2,11 +2,9 @@
 // The 3-D view. It draws a frame only when something has changed: a wearable's viewer is often a phone.
 import {
   DirectionalLight,
-  Fog,
-  GridHelper,
   Group,
   HemisphereLight,
-  type LineBasicMaterial,
+  type LineSegments,
   type Object3D,
   PerspectiveCamera,
   Raycaster,
@@ -17,15 +15,17 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { CSS2DObject, CSS2DRenderer } from "three/addons/renderers/CSS2DRenderer.js";
-import { boundsOf } from "../bounds";
+import { type Bounds, boundsOf, holds } from "../bounds";
 import { objectName } from "../format";
+import { floorAt, floorOf, quietSpot } from "../geometry";
 import type { Wearer } from "../live";
 import type { MapDocument, MapObject, TrackPose } from "../model";
 import { onThemeChange, reducedMotion } from "../theme";
 import { Figure } from "./figure";
+import { gridLines } from "./grid";
 import { disposeGroup, objectGroup } from "./objects";
 import { Palette } from "./palette";
-import { floorAt, floorOf, roomsGroup } from "./rooms";
+import { roomsGroup } from "./rooms";
 import { Tracks } from "./tracks";
 
 export interface SceneInput {
@@ -36,7 +36,8 @@ export interface SceneInput {
 }
 
 const kFrom = new Vector3(-0.45, -0.8, 0.85).normalize(); // from the south-west and above
-const kEase = 0.12; // part of the way that the camera goes in a frame
+const kRoomLabelPx = 110; // smaller rooms have no space for their name
+const kEaseMs = 160; // time in which the camera goes 63 % of its way
 
 export class SceneView {
   private renderer: WebGLRenderer;
@@ -47,7 +48,7 @@ export class SceneView {
   private palette = new Palette();
   private figure = new Figure(this.palette);
   private tracks = new Tracks(this.palette);
-  private grid?: GridHelper;
+  private grid?: LineSegments;
   private rooms = new Group();
   private objects = new Map<number, { object: MapObject; selected: boolean; group: Group }>();
   private labelled = new Group();
@@ -55,7 +56,9 @@ export class SceneView {
   private hovered?: number;
   private goal?: { target: Vector3; distance: number };
   private auto = true;
+  private framed?: Bounds;
   private requested = false;
+  private drawn = 0; // ms of the animation clock
   private stop: (() => void)[] = [];
 
   /** Throws when there is no WebGL. */
@@ -74,10 +77,9 @@ export class SceneView {
     this.controls.maxPolarAngle = Math.PI / 2 - 0.05;
     this.controls.minDistance = 1;
     this.controls.maxDistance = 120;
-    this.scene.fog = new Fog(0, 1, 2);
-    const sun = new DirectionalLight(0xffffff, 1.6);
+    const sun = new DirectionalLight(0xffffff, 1.5);
     sun.position.set(-3, -5, 8);
-    this.scene.add(new HemisphereLight(0xffffff, 0x8a939b, 1.9), sun);
+    this.scene.add(new HemisphereLight(0xffffff, 0xb4bcc2, 2.5), sun);
     this.scene.add(this.rooms, this.tracks.group, this.figure.group, this.labelled);
     this.recolour();
     this.listen();
@@ -89,6 +91,7 @@ export class SceneView {
     this.input = input;
     if (input.map !== before.map || input.selected !== before.selected) this.showMap(input.map !== before.map);
     if (input.track !== before.track) this.tracks.show(input.track);
+    if (input.map !== before.map || input.track !== before.track) this.showGrid();
     if (input.follow && !before.follow) this.auto = false;
     if (this.auto && (input.map !== before.map || input.track !== before.track)) this.frameAll();
     this.draw();
@@ -172,17 +175,16 @@ export class SceneView {
   }
 
   private recolour(): void {
-    const stage = this.palette.get("stage");
-    this.scene.fog = new Fog(stage, 1, 2);
-    this.grid?.dispose();
-    this.grid?.removeFromParent();
-    this.grid = new GridHelper(120, 120, this.palette.get("grid"), this.palette.get("grid"));
-    this.grid.rotation.x = Math.PI / 2;
-    this.grid.position.z = -0.02;
-    (this.grid.material as LineBasicMaterial).transparent = true;
-    this.scene.add(this.grid);
+    this.showGrid();
     this.figure.recolour(this.palette);
     this.tracks.recolour(this.palette);
+  }
+
+  private showGrid(): void {
+    this.grid?.geometry.dispose();
+    this.grid?.removeFromParent();
+    this.grid = gridLines(boundsOf(this.input.map, this.input.track), this.palette);
+    this.scene.add(this.grid);
   }
 
   private showMap(changed: boolean, all = false): void {
@@ -200,7 +202,7 @@ export class SceneView {
       const isSelected = object.id === selected;
       if (!all && shown?.object === object && shown.selected === isSelected) continue;
       if (shown) this.remove(object.id);
-      const group = objectGroup(object, this.palette, isSelected, floorAt(object.pose.position, map));
+      const group = objectGroup(object, this.palette, isSelected, floorAt([object.pose.position[0], object.pose.position[1]], map));
       this.objects.set(object.id, { object, selected: isSelected, group });
       this.scene.add(group);
     }
@@ -220,9 +222,9 @@ export class SceneView {
     this.labelled.clear();
     const { map, selected } = this.input;
     for (const room of map.rooms) {
-      const n = room.polygon.length;
-      const centre = room.polygon.reduce((sum, [x, y]) => sum.add(new Vector2(x / n, y / n)), new Vector2());
-      this.label(`Room ${room.id}`, `${room.area.toFixed(1)} m²`, new Vector3(centre.x, centre.y, floorOf(room, map)), "room");
+      const [x, y] = quietSpot(room, map);
+      const label = this.label(`Room ${room.id}`, `${room.area.toFixed(1)} m²`, new Vector3(x, y, floorOf(room, map)), "room");
+      label.userData.extent = Math.sqrt(room.area);
     }
     for (const id of new Set([selected, this.hovered])) {
       const object = id === undefined ? undefined : this.objects.get(id)?.object;
@@ -233,7 +235,7 @@ export class SceneView {
     }
   }
 
-  private label(name: string, detail: string, at: Vector3, kind: string): void {
+  private label(name: string, detail: string, at: Vector3, kind: string): CSS2DObject {
     const element = document.createElement("div");
     element.className = `label label-${kind}`;
     element.append(name);
@@ -244,16 +246,24 @@ export class SceneView {
     }
     const label = new CSS2DObject(element);
     label.position.copy(at);
+    if (kind !== "room") label.center.set(0.5, 1.15); // above what it names
     this.labelled.add(label);
+    return label;
+  }
+
+  /** How large a length looks, px. */
+  private pixels(length: number, at: Vector3): number {
+    const depth = this.camera.position.distanceTo(at);
+    return (length * this.host.clientHeight) / (2 * depth * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
   private frameAll(): void {
     const { map, track } = this.input;
-    const { min, max } = boundsOf(map, track, this.wearer.shown(performance.now())?.position);
+    this.framed = boundsOf(map, track, this.wearer.shown(performance.now())?.position);
+    const { min, max } = this.framed;
     const tall = map.objects.some((object) => object.type === "wall") ? 2.0 : 1.4;
     const target = new Vector3((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, tall * 0.35);
     this.goal = { target, distance: this.distanceFor(target, min, max, tall) };
-    if (reducedMotion()) this.ease(1);
   }
 
   /** How far away the box is whole in view from where the camera looks now. */
@@ -311,16 +321,19 @@ export class SceneView {
   private frame(now: number): void {
     const sample = this.wearer.shown(now);
     this.figure.show(sample);
+    if (this.auto && sample && this.framed && !holds(this.framed, sample.position)) this.frameAll();
     if (this.input.follow && sample) {
       const distance = this.goal?.distance ?? this.camera.position.distanceTo(this.controls.target);
       this.goal = { target: new Vector3(sample.position[0], sample.position[1], 0.8), distance };
     }
-    const easing = this.ease(reducedMotion() ? 1 : kEase);
+    const snap = this.drawn === 0 || reducedMotion();
+    const easing = this.ease(snap ? 1 : 1 - Math.exp(-Math.min(now - this.drawn, 100) / kEaseMs));
+    this.drawn = now;
     this.controls.update();
-    const distance = this.camera.position.distanceTo(this.controls.target);
-    const fog = this.scene.fog as Fog;
-    fog.near = distance * 0.9;
-    fog.far = distance * 2.4;
+    for (const label of this.labelled.children) {
+      const extent = label.userData.extent as number | undefined;
+      if (extent !== undefined) label.visible = this.pixels(extent, label.position) > kRoomLabelPx;
+    }
     this.renderer.render(this.scene, this.camera);
     this.labels.render(this.scene, this.camera);
     if (easing || this.wearer.moving(now)) this.draw();

@@ -62,7 +62,7 @@ function Tabs({ tab, counts, onTab }: { tab: Tab; counts: Partial<Record<Tab, nu
 function Notice({ state, empty }: { state: SuitState; empty: boolean }) {
   if (!state.detail) return null;
   return (
-    <div class={`notice tone-${state.tone}${empty ? " notice-empty" : ""}`} role="status">
+    <div class={`notice tone-${state.tone}${empty ? " notice-empty" : ""}`}>
       <strong>{state.title}</strong>
       <p>{state.detail}</p>
     </div>
@@ -121,9 +121,9 @@ export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
     <div class={`app sheet-${sheet.stop}${state.link.phase === "lost" ? " stale" : ""}`}>
       <header class="bar">
         <h1>Kinemap</h1>
-        <p class={`pill tone-${suit.tone}`} role="status">
-          {suit.title}
-          {suit.tone === "live" && state.status?.suit.wearer.name ? <span>{state.status.suit.wearer.name}</span> : null}
+        <p class={`pill tone-${suit.tone}`}>
+          <strong role="status">{suit.title}</strong>
+          <span>{suit.tone === "live" ? state.status?.suit.wearer.name : suit.lasted}</span>
         </p>
         <ThemeButton />
       </header>
@@ -189,7 +189,7 @@ export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
             />
             <div class="scroll" role="tabpanel" id="tabpanel" aria-labelledby={`tab-${tab}`} tabindex={0}>
               {tab === "Objects" && <ObjectList map={map} selected={selected} onSelect={select} />}
-              {tab === "Events" && <EventList events={events} onSelect={select} />}
+              {tab === "Events" && <EventList events={events} map={map} onSelect={select} />}
               {tab === "Suit" && <SuitPanel state={state} wearer={wearer} />}
             </div>
           </>

@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-import { clock } from "../format";
-import type { EventItem } from "../store";
+import { eventItem, type Happening } from "../events";
+import type { MapDocument } from "../model";
 
-export function EventList({ events, onSelect }: { events: EventItem[]; onSelect: (id: number) => void }) {
+interface Props {
+  events: Happening[];
+  map: MapDocument;
+  onSelect: (id: number) => void;
+}
+
+export function EventList({ events, map, onSelect }: Props) {
   if (events.length === 0) return <p class="empty">Nothing has happened yet. What the wearer finds, visits again and corrects appears here.</p>;
   return (
     <ol class="events">
-      {events.map((event) => {
+      {events.map((happening) => {
+        const { label, kind, text, object } = eventItem(happening, map);
         const content = (
           <>
-            <time>{event.time === undefined ? "" : clock(event.time)}</time>
-            <span>{event.text}</span>
+            <time>{label}</time>
+            <span>{text}</span>
           </>
         );
-        const { object } = event;
         return (
-          <li key={event.key} class={`event-${event.kind}`}>
+          <li key={happening.order} class={`event-${kind}`}>
             {object === undefined ? (
               <div>{content}</div>
             ) : (

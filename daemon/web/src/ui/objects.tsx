@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useMemo, useState } from "preact/hooks";
-import { clock, degrees, functionText, heading, metres, objectName, plusMinus, shortSize, typePlural } from "../format";
+import { clock, degrees, functionText, heading, metres, minus, objectName, plusMinus, shortSize, typePlural } from "../format";
+import { roomAt } from "../geometry";
 import type { MapDocument, MapObject } from "../model";
 import { Icon, typeIcon } from "./icons";
 
@@ -102,13 +103,14 @@ function sizeRows(object: MapObject): [string, string][] {
 
 export function ObjectDetail({ object, map, onClose }: { object: MapObject; map: MapDocument; onClose: () => void }) {
   const [x, y] = object.pose.position;
-  const room = map.rooms.find((candidate) => candidate.walls.includes(object.id));
+  const room = map.rooms.find(({ walls }) => walls.includes(object.id)) ?? roomAt([x, y], map);
   const rows: [string, string][] = [
     ...sizeRows(object),
-    ["Position", `x ${metres(x)}, y ${metres(y)}${object.sigma?.position === undefined ? "" : `, ± ${metres(Math.max(object.sigma.position, 0.01))}`}`],
+    ["Position", `${minus(x.toFixed(2))}, ${minus(y.toFixed(2))} m`],
+    ...(object.sigma?.position === undefined ? [] : [["Uncertainty", `± ${metres(Math.max(object.sigma.position, 0.01))}`] as [string, string]]),
     [object.type === "chair" ? "Faces" : "Heading", degrees(heading(object.pose)) + (object.sigma?.heading === undefined ? "" : ` ± ${degrees(object.sigma.heading, 1)}`)],
   ];
-  if (room) rows.push(["Bounds", `room ${room.id}`]);
+  if (room) rows.push(["Room", String(room.id)]);
   const visits = object.visits ?? [];
   return (
     <article class={`detail type-${object.type}`} aria-label={objectName(object)}>

@@ -7,6 +7,8 @@ export interface SuitState {
   /** live: all is well; wait: nothing to worry about; bad: something must be done. */
   tone: "live" | "wait" | "bad";
   title: string;
+  /** For how long, where that matters. */
+  lasted?: string;
   detail?: string;
 }
 
@@ -20,6 +22,7 @@ export function suitState({ link, status }: State, now: number): SuitState {
     return {
       tone: "bad",
       title: "Link lost",
+      lasted,
       detail: `No word from Kinemap since ${timeOfDay(link.since)}, ${lasted} ago. ${wait > 0 ? `Trying again in ${wait} s.` : "Trying again now."}`,
     };
   }
@@ -32,6 +35,7 @@ export function suitState({ link, status }: State, now: number): SuitState {
     return {
       tone: "wait",
       title: "Suit silent",
+      lasted: duration(suit.silence_s),
       detail: `The last frame came at ${timeOfDay(since)}, ${duration(suit.silence_s)} ago. The map stays as it is.`,
     };
   }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <optional>
 
+#include "daemon/foxglove_protocol.hpp"
 #include "daemon/web.hpp"
 
 namespace kinemap {
@@ -11,6 +12,7 @@ namespace {
 constexpr std::uint32_t kHeaderLimit = 8192;
 constexpr std::uint64_t kBodyLimit = 16384;  // no request needs a body; what comes is read and ignored
 constexpr std::size_t kTargetLimit = 2048;
+constexpr std::string_view kStreamPath = "/api/v1/stream", kFoxglovePath = "/";
 constexpr std::chrono::seconds kReadTimeout{30}, kWriteTimeout{60};
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
@@ -56,10 +58,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       ++context_.api.counts().errors;
       return send(error_reply(*problem));
     }
-    if (beast::websocket::is_upgrade(request)) {
-      stream_.expires_never();  // the WebSocket has its own time-outs
-      return serve_stream(std::move(stream_), parser_->release(), context_, std::move(slot_));
-    }
+    if (beast::websocket::is_upgrade(request)) return upgrade();
     send(context_.api.http(view(request.method_string()), view(request.target())));
   }
 
@@ -78,15 +77,39 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (request.target().size() > kTargetLimit)
       return ApiError{414, "target_too_long", "the request's target is longer than 2 KiB"};
     if (!beast::websocket::is_upgrade(request)) return std::nullopt;
+    return upgrade_refusal(request, host);
+  }
+
+  static std::string_view path_of(const http::request<http::string_body>& request) {
     const auto target = view(request.target());
-    if (target.substr(0, target.find('?')) != "/api/v1/stream")
+    return target.substr(0, target.find('?'));
+  }
+
+  static std::optional<ApiError> upgrade_refusal(const http::request<http::string_body>& request,
+                                                 std::string_view host) {
+    const auto path = path_of(request);
+    const auto origin = view(request[http::field::origin]);
+    if (path != kStreamPath && path != kFoxglovePath)
       return ApiError{.status = 404,
                       .code = "not_found",
-                      .message = "the WebSocket is at /api/v1/stream",
-                      .nearest = "/api/v1/stream"};
-    if (!origin_allowed(view(request[http::field::origin]), host))
+                      .message = "the WebSocket is at /api/v1/stream, the one for Foxglove's viewers at /",
+                      .nearest = std::string(kStreamPath)};
+    if (!(path == kStreamPath ? origin_allowed(origin, host) : viewer_origin_allowed(origin, host)))
       return ApiError{403, "forbidden_origin", "pages of other hosts may not open the stream"};
+    if (path == kFoxglovePath && !foxglove::choose_subprotocol(view(request[http::field::sec_websocket_protocol])))
+      return ApiError{400, "bad_subprotocol",
+                      "at / the WebSocket subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1; Kinemap's own "
+                      "stream is at /api/v1/stream"};
     return std::nullopt;
+  }
+
+  void upgrade() {
+    stream_.expires_never();  // the WebSocket has its own time-outs
+    auto request = parser_->release();
+    if (path_of(request) == kStreamPath)
+      return serve_stream(std::move(stream_), std::move(request), context_, std::move(slot_));
+    const auto subprotocol = foxglove::choose_subprotocol(view(request[http::field::sec_websocket_protocol]));
+    serve_foxglove(std::move(stream_), std::move(request), *subprotocol, context_, std::move(slot_));
   }
 
   void send(Reply reply) {

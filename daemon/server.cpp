@@ -5,9 +5,11 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "daemon/foxglove_feed.hpp"
 #include "daemon/web.hpp"
 
 namespace kinemap {
@@ -25,8 +27,10 @@ class Server::Impl {
        const ServerLimits& limits)
       : api_(std::move(sources), suit, suit_port),
         hub_(api_, config.pose_rate_hz),
-        context_{api_,         hub_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes,
-                 limits.stall, false} {}
+        foxglove_(api_),
+        context_{
+            api_,         hub_, foxglove_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes,
+            limits.stall, false} {}
   ~Impl() { io_.stop(); }
 
   ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
@@ -93,10 +97,12 @@ class Server::Impl {
   }
 
   void tick() {
-    ticker_.expires_after(hub_.period());
+    ticker_.expires_after(std::min(hub_.period(), foxglove_.period()));
     ticker_.async_wait([this](ErrorCode error) {
       if (error) return;
-      hub_.tick(std::chrono::steady_clock::now());
+      const auto now = std::chrono::steady_clock::now();
+      hub_.tick(now);
+      foxglove_.tick(now);
       tick();
     });
   }
@@ -104,6 +110,7 @@ class Server::Impl {
   // The thread uses all of them; connections live in the handlers that io_ holds, and refer to those above it.
   Api api_;
   StreamHub hub_;
+  foxglove::Feed foxglove_;
   WebContext context_;
   net::io_context io_{1};
   net::ip::tcp::acceptor acceptor_{io_};

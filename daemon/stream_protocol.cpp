@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "daemon/json_params.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -36,20 +38,6 @@ std::optional<std::vector<Topic>> topics_of(const Json& message, bool all_by_def
   return topics;
 }
 
-/// A parameter as it would stand in a URL: numbers and strings as they are, a list with commas.
-std::optional<std::string> param_text(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number()) return value.dump();
-  if (!value.is_array() || value.empty()) return std::nullopt;
-  std::string text;
-  for (const auto& item : value) {
-    const auto part = item.is_array() ? std::nullopt : param_text(item);
-    if (!part) return std::nullopt;
-    text += (text.empty() ? "" : ",") + *part;
-  }
-  return text;
-}
-
 ClientMessage query_of(const Json& message) {
   const auto id_it = message.find("id");
   if (id_it == message.end() || !(id_it->is_number() || id_it->is_string()))
@@ -63,12 +51,9 @@ ClientMessage query_of(const Json& message) {
   const auto params = message.find("params");
   if (params == message.end()) return query;
   if (!params->is_object()) return bad("\"params\" must be an object", query.id);
-  for (const auto& [key, value] : params->items()) {
-    auto text = param_text(value);
-    if (!text)
-      return bad("parameter " + key.substr(0, 40) + " must be a number, a string or a list of these", query.id);
-    query.params.emplace_back(key, std::move(*text));
-  }
+  auto values = params_from_json(*params);
+  if (!values) return bad(values.error(), query.id);
+  query.params = std::move(*values);
   return query;
 }
 

@@ -35,4 +35,12 @@ bool origin_allowed(std::string_view origin, std::string_view host) {
   return false;
 }
 
+bool viewer_origin_allowed(std::string_view origin, std::string_view host) {
+  if (origin_allowed(origin, host) || origin == "file://") return true;
+  for (const std::string_view scheme : {"http://", "https://"})
+    if (origin.starts_with(scheme))
+      return is_loopback(without_port(origin.substr(scheme.size()))) && is_loopback(without_port(host));
+  return false;
+}
+
 }  // namespace kinemap

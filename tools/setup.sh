@@ -84,6 +84,7 @@ if [[ $tests == yes ]]; then
   npm_packages daemon/web all
   npm_packages tests/web all
   npm_packages tests/export all
+  npm_packages tests/foxglove all
 else
   npm_packages daemon/web build
 fi

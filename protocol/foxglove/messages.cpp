@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cassert>
-#include <map>
 
 #include "core/body.hpp"
 #include "protocol/foxglove/json.hpp"
@@ -40,18 +39,6 @@ constexpr std::array<Joint, kSegmentCount> kJoints{{{"pelvis", Segment::Pelvis},
                                                     {"left_lower_leg", Segment::LeftUpperLeg},
                                                     {"left_foot", Segment::LeftLowerLeg},
                                                     {"left_toe", Segment::LeftFoot}}};
-
-using Objects = std::map<std::uint32_t, const MapObject*>;
-
-Objects by_id(const MapSnapshot& map) {
-  Objects objects;
-  for (const MapObject& object : map.objects) objects.emplace(object.id, &object);
-  return objects;
-}
-
-std::string name_of(const MapObject& object) {
-  return std::string(to_string(object.type)) + " " + std::to_string(object.id);
-}
 
 }  // namespace
 
@@ -95,21 +82,6 @@ Message log(double time_s, LogLevel level, const std::string& text) {
                    {"name", "kinemap"},
                    {"file", ""},
                    {"line", 0}})};
-}
-
-std::vector<Message> log_of_changes(const MapSnapshot& before, const MapSnapshot& after) {
-  const Objects old = by_id(before), now = by_id(after);
-  std::vector<Message> list;
-  const auto add = [&](const std::string& text) { list.push_back(log(after.time_s, LogLevel::Info, text)); };
-  for (const auto& [id, object] : now)
-    if (!old.contains(id)) add(name_of(*object) + " found");
-  for (const auto& [id, object] : old)
-    if (!now.contains(id)) add(name_of(*object) + " has gone: it was part of another, or could not be held");
-  if (after.graph.loop_closures > before.graph.loop_closures)
-    add("loop closed, " + std::to_string(after.graph.loop_closures) + " so far");
-  if (after.graph.loop_closures_revoked > before.graph.loop_closures_revoked)
-    add("loop closure taken back, " + std::to_string(after.graph.loop_closures_revoked) + " so far");
-  return list;
 }
 
 }  // namespace kinemap::foxglove

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/map.hpp"
 #include "protocol/foxglove/channels.hpp"
@@ -21,7 +20,5 @@ Message trajectory(const MapSnapshot& map, std::size_t max_poses = 0);
 
 enum class LogLevel : std::uint8_t { Info = 2, Warning = 3, Error = 4 };
 Message log(double time_s, LogLevel level, const std::string& text);
-/// What happened to the map from one revision to the next: objects found and gone, loops closed and opened again.
-std::vector<Message> log_of_changes(const MapSnapshot& before, const MapSnapshot& after);
 
 }  // namespace kinemap::foxglove

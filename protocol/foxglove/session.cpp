@@ -2,6 +2,7 @@
 #include "protocol/foxglove/session.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "protocol/foxglove/floor.hpp"
@@ -30,12 +31,39 @@ Message at(double time_s, Message message) {
   return message;
 }
 
+using Objects = std::map<std::uint32_t, const MapObject*>;
+
+Objects by_id(const MapSnapshot& map) {
+  Objects objects;
+  for (const MapObject& object : map.objects) objects.emplace(object.id, &object);
+  return objects;
+}
+
+std::string name_of(const MapObject& object) {
+  return std::string(to_string(object.type)) + " " + std::to_string(object.id);
+}
+
+/// Objects found and gone, loops closed and opened again, from one revision to the next.
+std::vector<Message> log_of_changes(const MapSnapshot& before, const MapSnapshot& after) {
+  const Objects old = by_id(before), now = by_id(after);
+  std::vector<Message> list;
+  const auto add = [&](const std::string& text) { list.push_back(log(after.time_s, LogLevel::Info, text)); };
+  for (const auto& [id, object] : now)
+    if (!old.contains(id)) add(name_of(*object) + " found");
+  for (const auto& [id, object] : old)
+    if (!now.contains(id)) add(name_of(*object) + " has gone: it was part of another, or could not be held");
+  if (after.graph.loop_closures > before.graph.loop_closures)
+    add("loop closed, " + std::to_string(after.graph.loop_closures) + " so far");
+  if (after.graph.loop_closures_revoked > before.graph.loop_closures_revoked)
+    add("loop closure taken back, " + std::to_string(after.graph.loop_closures_revoked) + " so far");
+  return list;
+}
+
 std::vector<Message> visits(const MapObject& object) {
-  const std::string name = std::string(to_string(object.type)) + " " + std::to_string(object.id);
   std::vector<Message> list;
   for (const Visit& visit : object.visits)
-    list.push_back(
-        log(visit.begin_s, LogLevel::Info, (object.type == ObjectType::Chair ? "sat on " : "traced ") + name));
+    list.push_back(log(visit.begin_s, LogLevel::Info,
+                       (object.type == ObjectType::Chair ? "sat on " : "traced ") + name_of(object)));
   return list;
 }
 

@@ -176,6 +176,14 @@ TEST_F(ServerTest, OtherHostNamesAndOriginsAreRefused) {
   EXPECT_EQ(reply.status, 403);
   EXPECT_EQ(reply.json()["error"]["code"], "forbidden_origin");
   EXPECT_EQ(HttpClient(port_).request("GET", "/elsewhere", upgrade).status, 404);
+  EXPECT_EQ(HttpClient(port_).request("GET", "/", upgrade).json()["error"]["code"], "bad_subprotocol");
+  auto viewer = upgrade;
+  viewer.emplace_back("Sec-WebSocket-Protocol", "foxglove.sdk.v1");
+  const auto accepted = HttpClient(port_).request("GET", "/", viewer);
+  EXPECT_EQ(accepted.status, 101);
+  EXPECT_EQ(accepted.header("Sec-WebSocket-Protocol"), "foxglove.sdk.v1");
+  viewer.emplace_back("Origin", "http://evil.example");
+  EXPECT_EQ(HttpClient(port_).request("GET", "/", viewer).status, 403);
   EXPECT_EQ(HttpClient(port_).request("GET", "/api/v1/stream", upgrade).status, 101);
 }
 

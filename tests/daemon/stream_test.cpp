@@ -160,5 +160,15 @@ TEST(WebPolicy, StreamsAreForPagesOfTheSameHost) {
     EXPECT_FALSE(origin_allowed(origin, "localhost:8765")) << origin;
 }
 
+TEST(WebPolicy, ViewersAreDesktopProgramsOrPagesOfThisMachine) {
+  for (const char* origin : {"", "file://", "http://localhost:8080", "http://127.0.0.1", "http://localhost:8765"})
+    EXPECT_TRUE(viewer_origin_allowed(origin, "localhost:8765")) << origin;
+  EXPECT_TRUE(viewer_origin_allowed("http://map.example", "map.example"));
+  for (const char* origin : {"null", "http://evil.example", "https://localhost.evil.example", "http://", "file://x"})
+    EXPECT_FALSE(viewer_origin_allowed(origin, "localhost:8765")) << origin;
+  EXPECT_FALSE(viewer_origin_allowed("http://localhost:8080", "map.example"))
+      << "of the visitor's machine, not of ours";
+}
+
 }  // namespace
 }  // namespace kinemap

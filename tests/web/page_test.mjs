@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { createSocket } from "node:dgram";
 import { after, before, test } from "node:test";
+import axe from "axe-core";
 import { Daemon, launchBrowser } from "./stage.mjs";
 
 const kDesktop = { width: 1200, height: 800 };
@@ -177,11 +178,40 @@ test("on a phone nothing is cut off, and what is pressed is large", async () => 
   await page.locator(".detail").waitFor();
   await check("an object");
   await page.getByRole("button", { name: "Close (Esc)" }).first().tap();
-  for (const name of [/Events/, /Suit/]) {
+  for (const name of [/Events/, /Suit/, /Files/]) {
     await page.getByRole("tab", { name }).tap();
     await check(String(name));
   }
   assert.deepEqual(complaints, []);
+});
+
+test("axe finds no barrier, in light and in dark", async () => {
+  const daemon = await mapped();
+  for (const colorScheme of ["light", "dark"]) {
+    const { page } = await open(daemon, { colorScheme });
+    const check = async (state) => {
+      await page.evaluate(axe.source);
+      const { violations } = await page.evaluate(() => globalThis.axe.run());
+      assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html)}`), [], `${colorScheme}, ${state}`);
+    };
+    await page.locator("button.item").first().waitFor();
+    for (const name of [/Events/, /Suit/, /Files/, /Objects/]) {
+      await page.getByRole("tab", { name }).click();
+      await check(String(name));
+    }
+    await page.locator("button.item").first().click();
+    await page.locator(".detail").waitFor();
+    await check("an object");
+  }
+});
+
+test("every file that the page offers is there", async () => {
+  const daemon = await mapped();
+  const { page } = await open(daemon);
+  await page.getByRole("tab", { name: /Files/ }).click();
+  const links = await page.locator(".panel a").evaluateAll((list) => list.map(({ href }) => href));
+  assert.ok(links.length > 8);
+  for (const link of links) assert.equal((await fetch(link)).status, 200, link);
 });
 
 test("a lost link is said at once, and comes back by itself", () =>

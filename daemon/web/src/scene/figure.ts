@@ -15,7 +15,7 @@ const kBones: readonly (readonly [number, number, number])[] = [
 ];
 const kHandBones: readonly (readonly [number, number])[] = [[9, 10], [13, 14]];
 const kHandLength = 0.16;
-const kHeadRadius = 0.105;
+const kHeadRadius = 0.1;
 const kUp = new Vector3(0, 1, 0);
 
 export class Figure {

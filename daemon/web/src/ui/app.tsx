@@ -6,6 +6,7 @@ import { type Store, useNow, useStore, type View } from "../store";
 import { applyTheme, savedTheme, type Theme } from "../theme";
 import { EventList } from "./events";
 import { Figures } from "./figures";
+import { FileList } from "./files";
 import { Icon } from "./icons";
 import { ObjectDetail, ObjectList } from "./objects";
 import { SceneHost } from "./scene_host";
@@ -13,7 +14,7 @@ import { useSheet } from "./sheet";
 import { SuitPanel } from "./suit";
 import { suitState, type SuitState } from "./suit_state";
 
-const kTabs = ["Objects", "Events", "Suit"] as const;
+const kTabs = ["Objects", "Events", "Suit", "Files"] as const;
 type Tab = (typeof kTabs)[number];
 const kThemes: Theme[] = ["auto", "light", "dark"];
 
@@ -98,7 +99,7 @@ export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
     if (id !== undefined) sheet.setStop((old) => (old === "peek" ? "half" : old));
   };
   const close = () => {
-    const last = selected;
+    const last = store.get().selected;
     store.set({ selected: undefined });
     // Back to where one came from: the item in the list, which is drawn again.
     requestAnimationFrame(() => {
@@ -190,6 +191,7 @@ export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
             <div class="scroll" role="tabpanel" id="tabpanel" aria-labelledby={`tab-${tab}`} tabindex={0}>
               {tab === "Objects" && <ObjectList map={map} selected={selected} onSelect={select} />}
               {tab === "Events" && <EventList events={events} map={map} onSelect={select} />}
+              {tab === "Files" && <FileList />}
               {tab === "Suit" && <SuitPanel state={state} wearer={wearer} />}
             </div>
           </>

@@ -60,9 +60,9 @@ export function ObjectList({ map, selected, onSelect }: ListProps) {
       <div class="list" onKeyDown={moveFocus}>
         {byType(shown).map(([type, objects]) => (
           <section key={type} aria-label={typePlural(type)}>
-            <h3>
+            <h2 class="group">
               {typePlural(type)} <span>{objects.length}</span>
-            </h3>
+            </h2>
             <ul>
               {objects.map((object) => (
                 <li key={object.id}>

@@ -4,12 +4,6 @@ import type { Wearer } from "../live";
 import type { State } from "../store";
 import { loss, useDrift } from "./figures";
 
-const kFiles = [
-  ["map.json", "api/v1/map"],
-  ["trajectory", "api/v1/trajectory"],
-  ["status", "api/v1/status"],
-] as const;
-
 function rowsOf(state: State, drift: Wearer["drift"]): [string, string][] {
   const { status, map } = state;
   if (!status) return [];
@@ -46,17 +40,6 @@ export function SuitPanel({ state, wearer }: { state: State; wearer: Wearer }) {
           </div>
         ))}
       </dl>
-      <h3>Take it along</h3>
-      <ul class="files">
-        {kFiles.map(([name, path]) => (
-          <li>
-            <a href={path}>{name}</a>
-          </li>
-        ))}
-        <li>
-          <a href="licenses.txt">licences</a>
-        </li>
-      </ul>
     </div>
   );
 }

@@ -33,7 +33,8 @@ void map_events(Mapper& mapper, std::vector<Event>& events, double& map_s) {
 
 }  // namespace
 
-Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress) {
+Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress,
+                              const Observer& observer) {
   Tracker tracker(config.tracker);
   Mapper mapper(config.mapper);
   std::vector<Event> events;
@@ -47,6 +48,7 @@ Result<BatchResult> build_map(const std::string& recording, const Config& config
                                    tracker.step(frame, events);
                                  }
                                  map_events(mapper, events, times.map_s);
+                                 if (observer) observer(frame, *mapper.snapshot());
                                },
                            .on_wearer = [&](const WearerInfo& wearer) { mapper.set_wearer(wearer); }};
   const auto summary = [&] {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
+#include "core/body.hpp"
 #include "core/map.hpp"
 #include "core/tracker/tracker.hpp"
 #include "daemon/config.hpp"
@@ -26,9 +28,13 @@ struct BatchResult {
   StageTimes times;
 };
 
+/// Called with each frame and the map as it is by then.
+using Observer = std::function<void(const SuitFrame& frame, const MapSnapshot& map)>;
+
 /// A recording to a map: the very pipeline of the daemon (assembler, tracker, mapper), in one thread and without a
 /// clock, so that the same recording and configuration give the same map, byte for byte. The Error names the file and
 /// what is wrong with it.
-Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress = {});
+Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress = {},
+                              const Observer& observer = {});
 
 }  // namespace kinemap::cli

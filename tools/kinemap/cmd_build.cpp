@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "protocol/export/exports.hpp"
+#include "protocol/foxglove/session.hpp"
 #include "protocol/json_text.hpp"
 #include "tools/kinemap/batch.hpp"
 #include "tools/kinemap/command.hpp"
@@ -18,6 +21,7 @@ struct Options {
   std::string input;
   std::string out;
   std::string config;
+  double body_hz = 0.0;  // 0: only at the key poses
   bool json = false;
 };
 
@@ -97,6 +101,29 @@ nlohmann::ordered_json json_report(const BatchResult& result, const std::string&
           {"seconds", {{"read", result.times.read_s}, {"track", result.times.track_s}, {"map", result.times.map_s}}}};
 }
 
+/// The map, and the files in the output directory, with the whole body in session.mcap when that was asked for.
+Result<BatchResult> build_files(const Options& options, const Config& config) {
+  std::optional<NewFile> session;
+  std::optional<foxglove::SessionRecorder> recorder;
+  Observer observer;
+  if (options.body_hz > 0.0) {
+    session.emplace((std::filesystem::path(options.out) / "session.mcap").string());
+    recorder.emplace([&](std::string_view bytes) { session->append(bytes); }, options.body_hz);
+    observer = [&](const SuitFrame& frame, const MapSnapshot& map) { recorder->add(frame, map); };
+  }
+  auto result = [&] {
+    ProgressBar bar("build");
+    return build_map(
+        options.input, config, [&](double part) { bar.update(part); }, observer);
+  }();
+  if (!result) return result;
+  if (auto error = write_map_files(options.out, *result->map)) return *error;
+  if (!recorder) return result;
+  recorder->finish(*result->map);
+  if (auto error = session->commit()) return *error;  // over the one with the key poses
+  return result;
+}
+
 int build(const Options& options) {
   Config config;
   if (!options.config.empty()) {
@@ -106,13 +133,9 @@ int build(const Options& options) {
   }
   if (auto error = make_output_directory(options.out)) return fail("build", error->message + "; choose another --out");
 
-  const auto result = [&] {
-    ProgressBar bar("build");
-    return build_map(options.input, config, [&](double part) { bar.update(part); });
-  }();
+  const auto result = build_files(options, config);
   if (!result) return fail("build", result.error());
   for (const std::string& warning : result->recording.warnings) fail("build", "warning: " + warning);
-  if (auto error = write_map_files(options.out, *result->map)) return fail("build", error->message);
 
   if (options.json) return print("build", pretty_text(json_report(*result, options.out)));
   const double total = result->times.total_s();
@@ -145,6 +168,11 @@ void add_build(CLI::App& app, Run& run) {
       ->type_name("DIR");
   command->add_option("--config", options->config, "Configuration as for kinemapd; default: every key at its default")
       ->type_name("FILE");
+  command
+      ->add_option(
+          "--body-hz", options->body_hz,
+          "The whole body in session.mcap so many times a second (4.5 kB each); without, the pelvis at the key poses")
+      ->check(CLI::Range(0.1, 240.0));
   command->add_flag("--json", options->json, "Print the summary as JSON");
 }
 

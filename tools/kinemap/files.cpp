@@ -9,31 +9,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace kinemap::cli {
 namespace {
 
 Error errno_error(const std::string& path, const char* what) {
   return {path + ": " + what + ": " + std::strerror(errno)};
-}
-
-bool write_all(int file, const std::string& contents) {
-  std::size_t done = 0;
-  while (done < contents.size()) {
-    const ssize_t n = ::write(file, contents.data() + done, contents.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    done += static_cast<std::size_t>(n);
-  }
-  return true;
-}
-
-/// Renames a finished temporary file over `path`; removes it when that fails.
-std::optional<Error> replace_file(const std::string& temporary, const std::string& path) {
-  if (::rename(temporary.c_str(), path.c_str()) == 0) return std::nullopt;
-  Error error = errno_error(path, "cannot be replaced");
-  ::unlink(temporary.c_str());
-  return error;
 }
 
 }  // namespace
@@ -53,19 +35,45 @@ Result<std::string> read_file(const std::string& path) {
   return contents;
 }
 
-std::optional<Error> write_file(const std::string& path, const std::string& contents) {
-  std::string temporary = path + ".XXXXXX";
-  const int file = ::mkostemp(temporary.data(), O_CLOEXEC);
-  if (file < 0) return errno_error(path, "cannot be written");
+NewFile::NewFile(std::string path)
+    : path_(std::move(path)), temporary_(path_ + ".XXXXXX"), file_(::mkostemp(temporary_.data(), O_CLOEXEC)) {
+  if (file_ < 0) fail();
+}
+
+NewFile::~NewFile() {
+  if (file_ < 0) return;
+  ::close(file_);
+  ::unlink(temporary_.c_str());
+}
+
+void NewFile::fail() {
+  if (!error_) error_ = errno_error(path_, "cannot be written");
+}
+
+void NewFile::append(std::string_view bytes) {
+  while (!bytes.empty() && !error_) {
+    const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return fail();
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+std::optional<Error> NewFile::commit() {
+  if (error_) return error_;
   const mode_t mask = ::umask(0);
   ::umask(mask);
-  const bool written = write_all(file, contents) && ::fchmod(file, 0666 & ~mask) == 0 && ::fsync(file) == 0;
-  std::optional<Error> error;
-  if (!written) error = errno_error(path, "cannot be written");
-  if (::close(file) != 0 && !error) error = errno_error(path, "cannot be written");
-  if (!error) return replace_file(temporary, path);
-  ::unlink(temporary.c_str());
-  return error;
+  if (::fchmod(file_, 0666 & ~mask) != 0 || ::fsync(file_) != 0) fail();
+  if (!error_ && ::rename(temporary_.c_str(), path_.c_str()) != 0) error_ = errno_error(path_, "cannot be replaced");
+  if (error_) return error_;
+  ::close(std::exchange(file_, -1));
+  return std::nullopt;
+}
+
+std::optional<Error> write_file(const std::string& path, const std::string& contents) {
+  NewFile file(path);
+  file.append(contents);
+  return file.commit();
 }
 
 std::optional<Error> make_output_directory(const std::string& path) {

@@ -76,6 +76,18 @@ export class Daemon {
     return { done: once(sim, "exit"), stop: () => sim.kill("SIGKILL") };
   }
 
+  /** Map and suit's state once the suit is silent and no event waits for the solver. */
+  async settled() {
+    for (let quiet = 0, revision = -1; quiet < 4; ) {
+      await new Promise((resolve) => setTimeout(resolve, 500));
+      const { suit, rings, map } = await this.get("api/v1/status");
+      const waiting = suit.receiving || rings.events.fill > 0 || rings.frames.fill > 0 || map.revision !== revision;
+      quiet = waiting ? 0 : quiet + 1;
+      revision = map.revision;
+    }
+    return { map: await this.get("api/v1/map"), suit: (await this.get("api/v1/status")).suit };
+  }
+
   async get(path) {
     return (await fetch(this.url + path)).json();
   }

@@ -6,21 +6,20 @@ import {
   HemisphereLight,
   type LineSegments,
   type Object3D,
-  PerspectiveCamera,
   Raycaster,
   Scene as ThreeScene,
   Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { CSS2DObject, CSS2DRenderer } from "three/addons/renderers/CSS2DRenderer.js";
-import { type Bounds, boundsOf, holds } from "../bounds";
+import { boundsOf } from "../bounds";
 import { objectName } from "../format";
 import { floorAt, floorOf, quietSpot } from "../geometry";
 import type { Wearer } from "../live";
 import type { MapDocument, MapObject, TrackPose } from "../model";
 import { onThemeChange, reducedMotion } from "../theme";
+import { CameraRig } from "./camera_rig";
 import { Figure } from "./figure";
 import { gridLines } from "./grid";
 import { disposeGroup, objectGroup } from "./objects";
@@ -35,16 +34,13 @@ export interface SceneInput {
   follow: boolean;
 }
 
-const kFrom = new Vector3(-0.45, -0.8, 0.85).normalize(); // from the south-west and above
 const kRoomLabelPx = 110; // smaller rooms have no space for their name
-const kEaseMs = 160; // time in which the camera goes 63 % of its way
 
 export class SceneView {
   private renderer: WebGLRenderer;
   private labels = new CSS2DRenderer();
   private scene = new ThreeScene();
-  private camera = new PerspectiveCamera(38, 1, 0.1, 400);
-  private controls: OrbitControls;
+  private rig: CameraRig;
   private palette = new Palette();
   private figure = new Figure(this.palette);
   private tracks = new Tracks(this.palette);
@@ -54,9 +50,6 @@ export class SceneView {
   private labelled = new Group();
   private input: SceneInput = { map: { revision: 0, time: 0, objects: [], rooms: [] }, track: [], follow: false };
   private hovered?: number;
-  private goal?: { target: Vector3; distance: number };
-  private auto = true;
-  private framed?: Bounds;
   private requested = false;
   private drawn = 0; // ms of the animation clock
   private stop: (() => void)[] = [];
@@ -71,12 +64,7 @@ export class SceneView {
     this.renderer.domElement.className = "scene-canvas";
     this.labels.domElement.className = "scene-labels";
     host.append(this.renderer.domElement, this.labels.domElement);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(kFrom).multiplyScalar(9);
-    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.maxPolarAngle = Math.PI / 2 - 0.05;
-    this.controls.minDistance = 1;
-    this.controls.maxDistance = 120;
+    this.rig = new CameraRig(this.renderer.domElement, () => this.draw());
     const sun = new DirectionalLight(0xffffff, 1.5);
     sun.position.set(-3, -5, 8);
     this.scene.add(new HemisphereLight(0xffffff, 0xb4bcc2, 2.5), sun);
@@ -92,28 +80,26 @@ export class SceneView {
     if (input.map !== before.map || input.selected !== before.selected) this.showMap(input.map !== before.map);
     if (input.track !== before.track) this.tracks.show(input.track);
     if (input.map !== before.map || input.track !== before.track) this.showGrid();
-    if (input.follow && !before.follow) this.auto = false;
-    if (this.auto && (input.map !== before.map || input.track !== before.track)) this.frameAll();
+    if (input.follow && !before.follow) this.rig.auto = false;
+    if (this.rig.auto && (input.map !== before.map || input.track !== before.track)) this.frameAll();
     this.draw();
   }
 
   /** Everything in view, and from now on as the map grows. */
   fit(): void {
-    this.auto = true;
+    this.rig.auto = true;
     this.frameAll();
     this.draw();
   }
 
   zoom(factor: number): void {
-    this.auto = false;
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    this.goal = { target: this.controls.target.clone(), distance: offset.length() / factor };
+    this.rig.zoom(factor);
     this.draw();
   }
 
   dispose(): void {
     for (const stop of this.stop) stop();
-    this.controls.dispose();
+    this.rig.controls.dispose();
     this.renderer.dispose();
     this.host.replaceChildren();
   }
@@ -131,11 +117,6 @@ export class SceneView {
         this.draw();
       }),
     );
-    this.controls.addEventListener("change", () => this.draw());
-    this.controls.addEventListener("start", () => {
-      this.auto = false;
-      this.goal = undefined;
-    });
     const canvas = this.renderer.domElement;
     let down: { x: number; y: number } | undefined;
     canvas.addEventListener("pointerdown", (event) => (down = { x: event.clientX, y: event.clientY }));
@@ -160,7 +141,7 @@ export class SceneView {
     const box = this.renderer.domElement.getBoundingClientRect();
     const point = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
-    ray.setFromCamera(point, this.camera);
+    ray.setFromCamera(point, this.rig.camera);
     let walls: number | undefined;
     for (const hit of ray.intersectObjects([...this.objects.values()].map(({ group }) => group))) {
       let node: Object3D | null = hit.object;
@@ -251,49 +232,10 @@ export class SceneView {
     return label;
   }
 
-  /** How large a length looks, px. */
-  private pixels(length: number, at: Vector3): number {
-    const depth = this.camera.position.distanceTo(at);
-    return (length * this.host.clientHeight) / (2 * depth * Math.tan((this.camera.fov * Math.PI) / 360));
-  }
-
   private frameAll(): void {
     const { map, track } = this.input;
-    this.framed = boundsOf(map, track, this.wearer.shown(performance.now())?.position);
-    const { min, max } = this.framed;
     const tall = map.objects.some((object) => object.type === "wall") ? 2.0 : 1.4;
-    const target = new Vector3((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, tall * 0.35);
-    this.goal = { target, distance: this.distanceFor(target, min, max, tall) };
-  }
-
-  /** How far away the box is whole in view from where the camera looks now. */
-  private distanceFor(target: Vector3, min: readonly number[], max: readonly number[], tall: number): number {
-    const look = this.camera.position.clone().sub(this.controls.target).normalize();
-    const side = new Vector3(0, 0, 1).cross(look).normalize();
-    const up = look.clone().cross(side);
-    const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
-    let distance = 4;
-    for (const x of [min[0] ?? 0, max[0] ?? 0])
-      for (const y of [min[1] ?? 0, max[1] ?? 0])
-        for (const z of [0, tall]) {
-          const p = new Vector3(x, y, z).sub(target);
-          const depth = p.dot(look);
-          distance = Math.max(distance, depth + Math.abs(p.dot(up)) / tangent, depth + Math.abs(p.dot(side)) / (tangent * this.camera.aspect));
-        }
-    return distance * 1.12;
-  }
-
-  /** A part of the way to where the camera shall be; false when it is there. */
-  private ease(part: number): boolean {
-    if (!this.goal) return false;
-    const { target, distance } = this.goal;
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    const length = offset.length() + (distance - offset.length()) * part;
-    const there = this.controls.target.distanceTo(target) < 0.002 && Math.abs(length - distance) < 0.002;
-    this.controls.target.lerp(target, part);
-    this.camera.position.copy(this.controls.target).addScaledVector(offset.normalize(), length);
-    if (there) this.goal = undefined;
-    return !there;
+    this.rig.frame(boundsOf(map, track, this.wearer.shown(performance.now())?.position), tall);
   }
 
   private resize(): void {
@@ -303,9 +245,8 @@ export class SceneView {
     this.renderer.setSize(clientWidth, clientHeight);
     this.labels.setSize(clientWidth, clientHeight);
     this.tracks.resize(clientWidth, clientHeight);
-    this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
-    if (this.auto) this.frameAll();
+    this.rig.resize(clientWidth, clientHeight);
+    if (this.rig.auto) this.frameAll();
     this.draw();
   }
 
@@ -321,21 +262,16 @@ export class SceneView {
   private frame(now: number): void {
     const sample = this.wearer.shown(now);
     this.figure.show(sample);
-    if (this.auto && sample && this.framed && !holds(this.framed, sample.position)) this.frameAll();
-    if (this.input.follow && sample) {
-      const distance = this.goal?.distance ?? this.camera.position.distanceTo(this.controls.target);
-      this.goal = { target: new Vector3(sample.position[0], sample.position[1], 0.8), distance };
-    }
-    const snap = this.drawn === 0 || reducedMotion();
-    const easing = this.ease(snap ? 1 : 1 - Math.exp(-Math.min(now - this.drawn, 100) / kEaseMs));
+    if (sample && this.rig.lost(sample.position)) this.frameAll();
+    if (this.input.follow && sample) this.rig.follow(sample.position);
+    const easing = this.rig.move(this.drawn === 0 || reducedMotion() ? "all" : Math.min(now - this.drawn, 100));
     this.drawn = now;
-    this.controls.update();
     for (const label of this.labelled.children) {
       const extent = label.userData.extent as number | undefined;
-      if (extent !== undefined) label.visible = this.pixels(extent, label.position) > kRoomLabelPx;
+      if (extent !== undefined) label.visible = this.rig.pixels(extent, label.position, this.host.clientHeight) > kRoomLabelPx;
     }
-    this.renderer.render(this.scene, this.camera);
-    this.labels.render(this.scene, this.camera);
+    this.renderer.render(this.scene, this.rig.camera);
+    this.labels.render(this.scene, this.rig.camera);
     if (easing || this.wearer.moving(now)) this.draw();
   }
 }

@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""kinemapd is killed (SIGKILL) at random moments of a session and started again, over and over.
+
+After each restart every object that the killed daemon had announced must be there again, at its place, and the way up to the last second. Between
+death and the next start the suit is held, as if nothing of its stream had been missed.
+
+usage: kill9.py KINEMAPD KINEMAP --kills N [--speed S] [--seed SEED]
+"""
+import argparse
+import json
+import pathlib
+import random
+import re
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+
+PLACE_M = 0.02  # an object is where it was
+
+
+def datagrams(path):
+    """(seconds, payload) of each packet of a classic pcap of UDP over IPv4 on Ethernet, as `kinemap sim` writes them."""
+    data = path.read_bytes()
+    unit = {0xA1B2C3D4: 1e-6, 0xA1B23C4D: 1e-9}[struct.unpack_from("<I", data)[0]]
+    at = 24
+    while at < len(data):
+        seconds, fraction, size, _ = struct.unpack_from("<IIII", data, at)
+        packet = data[at + 16 : at + 16 + size]
+        header = 14 + 4 * (packet[14] & 15)
+        yield seconds + fraction * unit, packet[header + 8 :]
+        at += 16 + size
+
+
+class Suit:
+    """Sends a recording at `speed` from a thread of its own; can be held."""
+
+    def __init__(self, recording, speed):
+        self.recording, self.speed = recording, speed
+        self.running, self.ended, self.sent_s = threading.Event(), False, 0.0
+        self.port = None
+        threading.Thread(target=self._send, daemon=True).start()
+
+    def _send(self):
+        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        first = self.recording[0][0]
+        begin = time.monotonic()
+        for when, payload in self.recording:
+            if not self.running.is_set():
+                held = time.monotonic()
+                self.running.wait()
+                begin += time.monotonic() - held
+            wait = begin + (when - first) / self.speed - time.monotonic()
+            if wait > 0:
+                time.sleep(wait)
+            out.sendto(payload, ("127.0.0.1", self.port))
+            self.sent_s = when - first
+        self.ended = True
+
+
+class Daemon:
+    def __init__(self, program, config):
+        self.process = subprocess.Popen([program, "--config", config, "--port", "0", "--suit-port", "0"], stderr=subprocess.PIPE, text=True)
+        self.log = []
+        for line in self.process.stderr:
+            self.log.append(line)
+            ready = re.search(r"port (\d+), map at http://[^:]*:(\d+)/", line)
+            if ready:
+                self.suit_port, self.port = int(ready[1]), int(ready[2])
+                break
+        else:
+            sys.exit("kinemapd did not start:\n" + "".join(self.log))
+        threading.Thread(target=lambda: self.log.extend(self.process.stderr), daemon=True).start()
+
+    def get(self, path):
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api/v1/{path}", timeout=10) as answer:
+            return json.load(answer)
+
+    def restored(self):
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            journal = self.get("status").get("journal", {})
+            if journal.get("restored_entries") == journal.get("entries_to_restore"):
+                time.sleep(0.05)  # the map is published right after the last entry
+                return self.get("map"), self.get("trajectory")["poses"]
+            time.sleep(0.02)
+        sys.exit("the session is not back after a minute:\n" + "".join(self.log))
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+
+def missing(announced, restored):
+    """Objects of the first map that are not in the second, or elsewhere. The second may know more: what was on the disk and not announced yet; that
+    may have moved things, so places are compared where both are of the same revision."""
+    same = announced["revision"] == restored["revision"]
+    if restored["revision"] < announced["revision"]:
+        return [f"revision {announced['revision']} was announced, {restored['revision']} is back"]
+    there = {o["id"]: o for o in restored["objects"]}
+    lost = []
+    for o in announced["objects"]:
+        twin = there.get(o["id"])
+        if twin is None or twin["type"] != o["type"]:
+            lost.append(f"{o['type']} {o['id']} is gone")
+        elif same and max(abs(a - b) for a, b in zip(o["pose"]["position"], twin["pose"]["position"])) > PLACE_M:
+            lost.append(f"{o['type']} {o['id']} moved")
+    return lost
+
+
+def run_session(arguments, recording, config, kills, log):
+    """One session with so many kills in it. A line of figures for each."""
+    length = recording[-1][0] - recording[0][0]
+    suit = Suit(recording, arguments.speed)
+    moments = sorted(log.random.uniform(2.0, length) for _ in range(kills))
+    daemon = Daemon(arguments.kinemapd, config)
+    suit.port = daemon.suit_port
+    for moment in moments:
+        suit.running.set()
+        announced = daemon.get("map")
+        while suit.sent_s < moment and not suit.ended:
+            time.sleep(0.01)
+            announced = daemon.get("map")
+        daemon.kill()
+        suit.running.clear()
+        sent_s = suit.sent_s
+        died = daemon
+        daemon = Daemon(arguments.kinemapd, config)
+        suit.port = daemon.suit_port
+        restored, poses = daemon.restored()
+        lost_s = (sent_s - poses[-1]["time"]) / arguments.speed if poses else 0.0
+        log.add(moment, missing(announced, restored), lost_s, len(announced["objects"]), "".join(died.log[-20:]))
+    suit.running.set()
+    while not suit.ended:
+        time.sleep(0.05)
+    time.sleep(4.5)  # after 3 s of silence the map is settled
+    final = daemon.get("map")
+    daemon.kill()
+    return final
+
+
+class Log:
+    def __init__(self, seed):
+        self.random = random.Random(seed)
+        self.kills, self.lost, self.longest_s = 0, 0, 0.0
+
+    def add(self, moment, lost, lost_s, objects, log):
+        self.kills += 1
+        self.lost += len(lost)
+        self.longest_s = max(self.longest_s, lost_s)
+        print(f"kill {self.kills}: at {moment:.1f} s, {objects} objects announced, {len(lost)} lost, {lost_s:.2f} s of key poses lost", flush=True)
+        if lost:
+            print("  " + "; ".join(lost) + "\n" + log)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("kinemapd")
+    parser.add_argument("kinemap")
+    parser.add_argument("--kills", type=int, default=8)
+    parser.add_argument("--per-session", type=int, default=8)
+    parser.add_argument("--speed", type=float, default=20.0)
+    parser.add_argument("--seed", type=int, default=3)
+    arguments = parser.parse_args()
+    log = Log(arguments.seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        subprocess.run([arguments.kinemap, "sim", "--seed", str(arguments.seed), "--drift", "good", "--out", name], check=True, stdout=subprocess.DEVNULL)
+        recording = list(datagrams(folder / "session.pcap"))
+        session = 0
+        while log.kills < arguments.kills:
+            session += 1
+            config = folder / f"config{session}.json"
+            config.write_text(json.dumps({"journal": {"directory": str(folder / f"state{session}"), "min_free_mb": 0}}))
+            final = run_session(arguments, recording, config, min(arguments.per_session, arguments.kills - log.kills), log)
+            print(f"session {session}: {len(final['objects'])} objects in the end", flush=True)
+    print(f"{log.kills} kills: {log.lost} announced objects lost, at most {log.longest_s:.2f} s of key poses")
+    sys.exit(1 if log.lost or log.longest_s > 1.0 else 0)
+
+
+if __name__ == "__main__":
+    main()

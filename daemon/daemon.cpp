@@ -71,4 +71,17 @@ void Daemon::reconfigure(const Config& config) {
   spdlog::info("SIGHUP: the configuration was read again");
 }
 
+std::string Daemon::summary() const {
+  const auto state = receiver_->state();
+  const auto map = pipeline_.map();
+  const bool ever = state.counts.last_frame_s >= 0.0;
+  const double silence_s = state.now_s - state.counts.last_frame_s;
+  const std::string suit = state.news->refusal ? "refused: " + *state.news->refusal
+                           : !ever             ? fmt::format("waiting for the suit on port {}", suit_port())
+                           : silence_s > 2.0   ? fmt::format("suit silent for {:.0f} s", silence_s)
+                                               : fmt::format("receiving {:.0f} Hz", state.counts.rate_hz);
+  return fmt::format("{}; {} objects, {} rooms, {} loops closed", suit, map->objects.size(), map->rooms.size(),
+                     map->graph.loop_closures);
+}
+
 }  // namespace kinemap

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "daemon/config.hpp"
@@ -20,6 +21,12 @@ class Daemon {
   /// Takes over what can change in a running daemon (log.level, api.pose_rate_hz, api.max_clients,
   /// api.client_buffer_bytes) and says which other changes need a restart.
   void reconfigure(const Config& config);
+
+  /// Sign of life of the detection loop, for the watchdog (Pipeline::pulse).
+  void ask_for_pulse() { pipeline_.ask_for_pulse(); }
+  [[nodiscard]] std::uint64_t pulse() const { return pipeline_.pulse(); }
+  /// One line for `systemctl status`.
+  [[nodiscard]] std::string summary() const;
 
   [[nodiscard]] std::uint16_t api_port() const { return server_->port(); }
   [[nodiscard]] std::uint16_t suit_port() const { return receiver_->port(); }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "daemon/config.hpp"
 #include "daemon/daemon.hpp"
@@ -73,7 +74,16 @@ int run(const Arguments& arguments, const Config& config) {
   }
   Daemon& daemon = *std::get<std::unique_ptr<Daemon>>(started);
   notify_service_manager("READY=1");
-  while (signals.wait() == Signal::Reload) {
+  // The watchdog hears of us as long as the detection loop comes round, not as long as this thread does.
+  std::uint64_t pulse = daemon.pulse();
+  const auto tick = [&] {
+    if (daemon.pulse() != std::exchange(pulse, daemon.pulse())) notify_service_manager("WATCHDOG=1");
+    daemon.ask_for_pulse();
+    notify_service_manager("STATUS=" + daemon.summary());
+  };
+  const auto period = watchdog_period().value_or(std::chrono::seconds(20)) / 4;
+  tick();
+  while (signals.wait(period, tick) == Signal::Reload) {
     notify_service_manager("RELOADING=1");
     reload(arguments, daemon);
     notify_service_manager("READY=1");

@@ -71,6 +71,11 @@ bool Pipeline::offer(const WearerInfo& wearer) {
   return frames_.push({{}, std::make_shared<const WearerInfo>(wearer), false});
 }
 
+void Pipeline::ask_for_pulse() {
+  pulse_asked_.fetch_add(1, std::memory_order_relaxed);
+  frames_.wake();
+}
+
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
@@ -88,6 +93,7 @@ void Pipeline::detect(const std::stop_token& stop) {
   for (;;) {
     const auto ticket = frames_.ticket();  // before the check for a stop: its wake-up must not fall in between
     if (stop.stop_requested()) return;
+    pulse_.store(pulse_asked_.load(std::memory_order_relaxed), std::memory_order_relaxed);
     auto message = frames_.pop();
     if (!message) {
       frames_.wait(ticket);

@@ -86,6 +86,10 @@ class Pipeline {
   /// Frames may follow all the same.
   bool offer_silence();
 
+  /// Any thread: asks the detection loop for a sign of life, which `pulse()` counts as soon as the loop comes round.
+  void ask_for_pulse();
+  [[nodiscard]] std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
+
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
   [[nodiscard]] LiveBody live_body() const { return live_body_.get(); }
@@ -121,13 +125,14 @@ class Pipeline {
   void fold(const E& event);
   void notify(const Event& event);
 
-  bool discontinuity_lost_ = false;                 // network thread only: a refused frame said so, the next one must
-  Ring<SuitMessage> frames_;                        // network → detection
-  Queue unwritten_;                                 // detection → journal
-  Queue events_;                                    // detection or journal → solver
-  Ring<Notice> notices_;                            // solver → the one listener
-  Latest<MapSnapshot> map_;                         // solver → everyone who asks
-  LatestValue<LiveBody> live_body_;                 // detection → everyone who asks
+  bool discontinuity_lost_ = false;  // network thread only: a refused frame said so, the next one must
+  Ring<SuitMessage> frames_;         // network → detection
+  Queue unwritten_;                  // detection → journal
+  Queue events_;                     // detection or journal → solver
+  Ring<Notice> notices_;             // solver → the one listener
+  Latest<MapSnapshot> map_;          // solver → everyone who asks
+  LatestValue<LiveBody> live_body_;  // detection → everyone who asks
+  std::atomic<std::uint64_t> pulse_asked_{0}, pulse_{0};
   LatestValue<TrackerStats> tracker_stats_;         // detection → everyone who asks
   LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks

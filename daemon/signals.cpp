@@ -12,14 +12,26 @@
 
 namespace kinemap {
 
-Signals::Signals() : set_(context_, SIGINT, SIGTERM, SIGHUP) {
+Signals::Signals() : set_(context_, SIGINT, SIGTERM, SIGHUP), timer_(context_) {
   // A client that goes away while it is written to is an error code, not the end.
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-Signal Signals::wait() {
+Signal Signals::wait(std::chrono::milliseconds period, const std::function<void()>& tick) {
   int caught = 0;
-  set_.async_wait([&](const boost::system::error_code&, int signal) { caught = signal; });
+  set_.async_wait([&](const boost::system::error_code&, int signal) {
+    caught = signal;
+    timer_.cancel();
+  });
+  const std::function<void()> sleep = [&] {
+    timer_.expires_after(period);
+    timer_.async_wait([&](const boost::system::error_code& error) {
+      if (error || caught != 0) return;
+      tick();
+      sleep();
+    });
+  };
+  sleep();
   context_.restart();
   context_.run();
   if (caught == SIGHUP) return Signal::Reload;
@@ -27,10 +39,18 @@ Signal Signals::wait() {
   return Signal::End;
 }
 
-void notify_service_manager([[maybe_unused]] const char* state) {
+void notify_service_manager([[maybe_unused]] const std::string& state) {
 #ifdef KINEMAP_SYSTEMD
-  sd_notify(0, state);
+  sd_notify(0, state.c_str());
 #endif
+}
+
+std::optional<std::chrono::milliseconds> watchdog_period() {
+#ifdef KINEMAP_SYSTEMD
+  std::uint64_t microseconds = 0;
+  if (sd_watchdog_enabled(0, &microseconds) > 0) return std::chrono::milliseconds(microseconds / 1000);
+#endif
+  return std::nullopt;
 }
 
 void set_up_logging() {

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+// before Asio, which needs it
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
 
 namespace kinemap {
 
@@ -15,15 +22,19 @@ class Signals {
  public:
   Signals();
 
-  [[nodiscard]] Signal wait();
+  /// Waits for a signal, and calls `tick` each time that `period` has passed meanwhile.
+  [[nodiscard]] Signal wait(std::chrono::milliseconds period, const std::function<void()>& tick);
 
  private:
   boost::asio::io_context context_;
   boost::asio::signal_set set_;
+  boost::asio::steady_timer timer_;
 };
 
 /// Tells systemd, when it started us (Type=notify); nothing otherwise.
-void notify_service_manager(const char* state);
+void notify_service_manager(const std::string& state);
+/// How often systemd wants a sign of life (WatchdogSec=); nullopt when it wants none.
+std::optional<std::chrono::milliseconds> watchdog_period();
 
 /// Messages go to stderr, which systemd's journal keeps.
 void set_up_logging();

@@ -40,9 +40,14 @@ std::size_t reassign(std::span<ContactFactor> contacts, const graph::Graph& grap
   const std::array<double, 2> size{landmark.x[4], landmark.x[5]};
   const auto asked = queries(contacts, graph, landmark_pose(landmark).inverse());
   const auto sides = choose_sides(asked, size, kAll, costs, true);
+  // What lies in a corner says nothing of a side, and no more that the side was followed: else an open end would lose
+  // its one contact to a side that keeps none.
+  std::vector<Edge> clear = sides;
   std::array<std::size_t, 5> followed{};
-  for (const Edge side : sides)
-    if (side != Edge::None) ++followed[static_cast<std::size_t>(side)];
+  for (std::size_t k = 0; k < clear.size(); ++k) {
+    if (clear[k] != Edge::None && in_corner(asked[k].p, size, kAll, clear[k], costs)) clear[k] = Edge::None;
+    if (clear[k] != Edge::None) ++followed[static_cast<std::size_t>(clear[k])];
+  }
   std::size_t changed = 0;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     ContactFactor& contact = contacts[k];
@@ -50,7 +55,7 @@ std::size_t reassign(std::span<ContactFactor> contacts, const graph::Graph& grap
     if (followed[static_cast<std::size_t>(corner)] >= kFollowed) corner = Edge::None;
     // The end of an open contour holds the length of the side: it stays on its side even where it strayed.
     if (corner != Edge::None && !crossing(edge, corner)) edge = contact.edge;
-    if (corner == Edge::None && edge != Edge::None && in_corner(asked[k].p, size, kAll, edge, costs)) edge = Edge::None;
+    if (corner == Edge::None) edge = clear[k];
     if (edge == contact.edge && corner == contact.corner) continue;
     contact.edge = edge, contact.corner = corner;
     ++changed;

@@ -25,4 +25,7 @@ std::string map_text(const MapSnapshot& map);
 /// Reads what `map_text` wrote (objects, rooms, revision). The Error names the key path.
 Result<MapSnapshot> map_from_text(const std::string& text);
 
+/// Reads the objects of an answer of /api/v1/objects; what else is in it is left alone.
+Result<std::vector<MapObject>> objects_from_text(const std::string& text);
+
 }  // namespace kinemap

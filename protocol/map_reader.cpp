@@ -155,4 +155,15 @@ Result<MapSnapshot> map_from_text(const std::string& text) {
   return map;
 }
 
+Result<std::vector<MapObject>> objects_from_text(const std::string& text) {
+  const auto json = parse_json(text);
+  if (!json) return Error{json.error()};
+  std::optional<Error> error;
+  std::vector<MapObject> objects;
+  for (const JsonCursor& object : JsonCursor(*json, error).at("objects").items())
+    objects.push_back(read_object(object));
+  if (error) return *error;
+  return objects;
+}
+
 }  // namespace kinemap

@@ -76,7 +76,7 @@ JSON
 "$kinemapd" --config "$work/config.json" >"$work/log" 2>&1 &
 daemon=$!
 for ((i = 0; i < 100; i++)); do
-  "$kinemap" status --host "$api" >/dev/null 2>&1 && break
+  "$kinemap" status --url "http://$api" >/dev/null 2>&1 && break
   if ! kill -0 "$daemon" 2>/dev/null || ((i == 99)); then
     echo "demo.sh: kinemapd did not start:" >&2
     cat "$work/log" >&2
@@ -90,7 +90,7 @@ echo "demo: a simulated wearer walks round, $speed times real time"
 "$kinemap" sim --seed "$seed" --drift "$drift" --udp "127.0.0.1:$suit_port" --speed "$speed"
 
 # The last gestures may still be on their way through the solver: wait until the map has been still for a second.
-revision() { "$kinemap" map --host "$api" --json 2>/dev/null | python3 -c 'import json, sys; print(json.load(sys.stdin)["revision"])'; }
+revision() { "$kinemap" map --url "http://$api" --json 2>/dev/null | python3 -c 'import json, sys; print(json.load(sys.stdin)["revision"])'; }
 before=none
 for ((i = 0; i < 30; i++)); do
   now=$(revision)
@@ -100,10 +100,10 @@ for ((i = 0; i < 30; i++)); do
 done
 
 echo
-"$kinemap" map --host "$api"
+"$kinemap" map --url "http://$api"
 echo
 if [[ $keep == yes ]]; then
-  echo "The map: http://$api/    kinemap status --host $api    Ctrl-C ends the daemon"
+  echo "The map: http://$api/    kinemap status --url http://$api    Ctrl-C ends the daemon"
   wait "$daemon"
 else
   echo "The map was at http://$api/ (with --keep the daemon goes on and you can look at it)"

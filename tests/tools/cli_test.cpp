@@ -99,7 +99,8 @@ class Listener {
 TEST_F(Cli, HelpTeaches) {
   EXPECT_EQ(kinemap({"--help"}).code, 0);
   EXPECT_NE(kinemap({"--help"}).out.find("kinemap build session/session.pcap --out map"), string::npos);
-  for (const char* command : {"sim", "replay", "build", "map", "status", "watch", "optimize", "eval"}) {
+  for (const char* command :
+       {"sim", "replay", "build", "map", "objects", "export", "status", "watch", "optimize", "eval"}) {
     const Ran help = kinemap({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
     EXPECT_NE(help.out.find("Examples:"), string::npos) << command;
@@ -123,6 +124,12 @@ TEST_F(Cli, WrongUsageIsTwo) {
   expect_refusal({"replay", pcap(), "--speed", "-1"}, 2, "--speed");
   expect_refusal({"status", "--host", "a:b"}, 2, "a:b");
   expect_refusal({"map", "--host", "h:1", "--file", "f"}, 2, "--file");
+  expect_refusal({"export", "--url", "h:1", "--file", "f", "plan.svg"}, 2, "--file");
+  expect_refusal({"export"}, 2, "--list");
+  expect_refusal({"export", "plan.sgv"}, 2, "plan.sgv");
+  expect_refusal({"export", "all", "--out", "-"}, 2, "--out -");
+  expect_refusal({"status", "--url", "https://h"}, 2, "https is not supported yet");
+  expect_refusal({"objects", "--url", "ftp://h"}, 2, "ftp://");
   EXPECT_FALSE(fs::exists(at("x")));
 }
 
@@ -239,9 +246,79 @@ TEST_F(Cli, MapListsAndDraws) {
 
 TEST_F(Cli, NoDaemonIsSaid) {
   // Port 1 of this machine: nobody listens there.
-  for (const char* command : {"map", "status"})
-    expect_refusal({command, "--host", "127.0.0.1:1"}, 1, "is kinemapd running");
-  expect_refusal({"watch", "--once", "--host", "127.0.0.1:1"}, 1, "is kinemapd running");
+  for (const char* command : {"map", "status", "objects"})
+    expect_refusal({command, "--url", "127.0.0.1:1"}, 1, "is kinemapd running");
+  expect_refusal({"watch", "--once", "--url", "127.0.0.1:1"}, 1, "is kinemapd running");
+}
+
+TEST_F(Cli, ExportWritesWhatTheFilesHold) {
+  fs::create_directories(root_ / "lone");
+  write("lone/map.json", map_text(sample_map()));
+  const Ran all = kinemap({"export", "all", "--file", at("lone"), "--out", at("files")});
+  EXPECT_EQ(all.code, 1) << "a directory must be whole";
+  const Ran some = kinemap({"export", "all", "--file", at("lone/map.json"), "--out", at("files"), "--json"});
+  ASSERT_EQ(some.code, 0) << some.err;
+  EXPECT_NE(some.err.find("left out: " + at("lone/map.json") + ": trajectory.tum needs"), string::npos) << some.err;
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(Json::parse(some.out)["written"].size()),
+            std::distance(fs::directory_iterator(at("files")), {}));
+  EXPECT_EQ(kinemap({"export", "objects.csv", "--file", at("lone/map.json"), "--out", "-"}).out,
+            slurp(at("files/objects.csv")));
+  EXPECT_EQ(kinemap({"export", "plan.svg", "--file", at("lone/map.json"), "--out", at("named.svg")}).code, 0);
+  EXPECT_EQ(slurp(at("named.svg")), slurp(at("files/plan.svg")));
+  EXPECT_NE(kinemap({"export", "--list"}).out.find("floor.pgm"), string::npos);
+  expect_refusal({"export", "graph.g2o", "--file", at("lone/map.json"), "--out", at("files")}, 1, "graph.g2o needs");
+}
+
+/// Answers one HTTP request on a free port and keeps it.
+class OneAnswer {
+ public:
+  explicit OneAnswer(string answer) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t length = sizeof address;
+    ::bind(socket_, reinterpret_cast<sockaddr*>(&address), length);
+    ::listen(socket_, 1);
+    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::thread([this, answer = std::move(answer)] {
+      const int client = ::accept(socket_, nullptr, nullptr);
+      char buffer[4096];
+      while (request_.find("\r\n\r\n") == string::npos) {
+        const ssize_t n = ::recv(client, buffer, sizeof buffer, 0);
+        if (n <= 0) break;
+        request_.append(buffer, static_cast<std::size_t>(n));
+      }
+      ::send(client, answer.data(), answer.size(), 0);
+      ::close(client);
+    });
+  }
+  ~OneAnswer() { ::close(socket_); }
+  OneAnswer(const OneAnswer&) = delete;
+  OneAnswer& operator=(const OneAnswer&) = delete;
+  [[nodiscard]] string url() const { return "http://127.0.0.1:" + std::to_string(port_); }
+  string request() {
+    thread_.join();
+    return request_;
+  }
+
+ private:
+  int socket_;
+  int port_ = 0;
+  string request_;
+  std::thread thread_;
+};
+
+TEST_F(Cli, TheTokenIsShownAndAPathKept) {
+  OneAnswer daemon(
+      "HTTP/1.1 401 Unauthorized\r\nContent-Length: 37\r\n\r\n{\"error\": {\"message\": \"who is there\"}}");
+  const Ran ran = run_command({"/usr/bin/env", "KINEMAP_TOKEN=s3cret", "KINEMAP_URL=" + daemon.url() + "/kinemap/",
+                               KINEMAP_BIN, "objects", "--near", "1,-2", "--function", "a b"});
+  const string request = daemon.request();
+  EXPECT_EQ(request.substr(0, request.find('\r')), "GET /kinemap/api/v1/objects?function=a%20b&near=1,-2 HTTP/1.1");
+  EXPECT_NE(request.find("Authorization: Bearer s3cret\r\n"), string::npos) << request;
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.err.find("KINEMAP_TOKEN is not the right one"), string::npos) << ran.err;
 }
 
 TEST_F(Cli, ReplaySendsEveryDatagram) {

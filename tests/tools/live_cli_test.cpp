@@ -61,12 +61,12 @@ TEST(LiveCli, StatusMapAndWatchFollowAWearer) {
 
   Background daemon({KINEMAPD_BIN, "--config", config}, (root / "daemon.log").string());
   ASSERT_TRUE(within(std::chrono::seconds(30), [&] {
-    return kinemap({"status", "--host", api}).code == 0;
+    return kinemap({"status", "--url", api}).code == 0;
   })) << slurp((root / "daemon.log").string());
-  EXPECT_NE(kinemap({"map", "--host", api}).out.find("0 objects"), std::string::npos);
+  EXPECT_NE(kinemap({"map", "--url", api}).out.find("0 objects"), std::string::npos);
 
   const std::string watched = (root / "watch.log").string();
-  Background watch({KINEMAP_BIN, "watch", "--host", api, "--json", "--topics", "map,events"}, watched);
+  Background watch({KINEMAP_BIN, "watch", "--url", api, "--json", "--topics", "map,events"}, watched);
   ASSERT_TRUE(
       within(std::chrono::seconds(30), [&] { return slurp(watched).find("\"topic\":\"map\"") != std::string::npos; }));
 
@@ -74,22 +74,37 @@ TEST(LiveCli, StatusMapAndWatchFollowAWearer) {
                            "127.0.0.1:" + std::to_string(suit), "--speed", "25", "--json"});
   ASSERT_EQ(sim.code, 0) << sim.err;
   EXPECT_EQ(Json::parse(sim.out)["refused"], 0);
-  const auto objects = [&] { return Json::parse(kinemap({"map", "--host", api, "--json"}).out)["objects"].size(); };
+  const auto objects = [&] { return Json::parse(kinemap({"map", "--url", api, "--json"}).out)["objects"].size(); };
   EXPECT_TRUE(within(std::chrono::seconds(30), [&] { return objects() >= 4; }));
 
-  const Json status = Json::parse(kinemap({"status", "--host", api, "--json"}).out);
+  const Json status = Json::parse(kinemap({"status", "--url", api, "--json"}).out);
   EXPECT_GT(status["tracker"]["frames"], 1000);
-  EXPECT_NE(kinemap({"status", "--host", api}).out.find("port       " + std::to_string(suit)), std::string::npos)
+  EXPECT_NE(kinemap({"status", "--url", api}).out.find("port       " + std::to_string(suit)), std::string::npos)
       << "a port is no count";
-  const Ran map = kinemap({"map", "--host", api, "--svg", (root / "plan.svg").string()});
+  const Ran map = kinemap({"map", "--url", api, "--svg", (root / "plan.svg").string()});
   EXPECT_NE(map.out.find("chair"), std::string::npos) << map.out;
   EXPECT_NE(slurp((root / "plan.svg").string()).find("class=\"path\""), std::string::npos)
       << "the daemon's trajectory is drawn";
+
+  const Json near = Json::parse(
+      kinemap({"objects", "--url", api, "--function", "bound", "--near", "1,2", "--limit", "2", "--json"}).out);
+  ASSERT_EQ(near["objects"].size(), 2U);
+  EXPECT_LE(near["objects"][0]["distance"], near["objects"][1]["distance"]);
+  EXPECT_NE(kinemap({"objects", "--url", api, "--near", "1,2"}).out.find("distance m"), std::string::npos);
+  const Ran bad = kinemap({"objects", "--url", api, "--near", "1;2"});
+  EXPECT_EQ(bad.code, 1);
+  EXPECT_NE(bad.err.find("near"), std::string::npos) << "the daemon's words: " << bad.err;
+
+  const Ran files = kinemap({"export", "all", "--url", "http://" + api + "/", "--out", (root / "files").string()});
+  ASSERT_EQ(files.code, 0) << files.err;
+  EXPECT_EQ(slurp((root / "files/plan.svg").string()).substr(0, 4), "<svg");
+  EXPECT_EQ(slurp((root / "files/scene.glb").string()).substr(0, 4), "glTF");
+  EXPECT_EQ(kinemap({"map", "--file", (root / "files").string()}).code, 0) << "as 'kinemap build' would have left it";
   EXPECT_TRUE(within(std::chrono::seconds(30),
                      [&] { return slurp(watched).find("\"event\":\"trace\"") != std::string::npos; }));
   EXPECT_EQ(watch.stop(SIGINT), 0);
 
-  const Ran wrong = run_command({KINEMAP_BIN, "watch", "--once", "--host", "127.0.0.1:" + std::to_string(suit)});
+  const Ran wrong = run_command({KINEMAP_BIN, "watch", "--once", "--url", "127.0.0.1:" + std::to_string(suit)});
   EXPECT_EQ(wrong.code, 1) << "the suit's port is not the API's";
   EXPECT_EQ(daemon.stop(SIGTERM), 0);
   fs::remove_all(root);

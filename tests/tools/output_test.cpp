@@ -131,7 +131,7 @@ TEST(TextTable, AlignsByWhatIsSeen) {
 }
 
 TEST(ObjectTable, NamesAllAndMarksAssumedHeights) {
-  const std::string table = object_table(sample_map());
+  const std::string table = object_table(sample_map().objects);
   EXPECT_NE(table.find("3.00 × 2.50*"), std::string::npos) << table;
   EXPECT_NE(table.find("* height assumed, not observed"), std::string::npos);
   EXPECT_NE(table.find("chair"), std::string::npos);

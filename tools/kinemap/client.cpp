@@ -7,7 +7,10 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cctype>
 #include <nlohmann/json.hpp>
+
+#include "protocol/text_format.hpp"
 
 namespace kinemap::cli {
 namespace {
@@ -22,12 +25,22 @@ using boost::system::error_code;
 constexpr auto kPatience = std::chrono::seconds(5);
 constexpr std::size_t kMaxMessageBytes = std::size_t{256} << 20;  // a large building's map, with room to spare
 
-Error connection_error(const Endpoint& daemon, const error_code& code) {
+Error connection_error(const DaemonAddress& daemon, const error_code& code) {
   std::string text = daemon.text() + ": " + code.message();
   if (code == asio::error::connection_refused)
-    text += "; is kinemapd running, and is api.port " + std::to_string(daemon.port) + "?";
-  if (code == beast::error::timeout) text = daemon.text() + ": no answer within 5 s";
+    text += "; is kinemapd running there, with api.port " + std::to_string(daemon.endpoint.port) +
+            " and, for other machines, an api.address that is not 127.0.0.1? --url or KINEMAP_URL names another";
+  if (code.category() == asio::error::get_netdb_category()) text += "; check the name in --url or KINEMAP_URL";
+  if (code == beast::error::timeout)
+    text = daemon.text() + ": no answer within 5 s; is the machine on, and does its firewall let port " +
+           std::to_string(daemon.endpoint.port) + " through?";
   return {text};
+}
+
+/// "Authorization: Bearer …" where there is a token.
+template <class Request>
+void show_token(const DaemonAddress& daemon, Request& request) {
+  if (!daemon.token.empty()) request.set(http::field::authorization, "Bearer " + daemon.token);
 }
 
 /// Runs `io` until what was started on it has ended, and hands out how it ended.
@@ -57,14 +70,15 @@ std::string message_of(const http::response<http::string_body>& response) {
 
 }  // namespace
 
-Result<std::string> http_get(const Endpoint& daemon, const std::string& target) {
+Result<std::string> http_get(const DaemonAddress& daemon, const std::string& target) {
   asio::io_context io;
   beast::tcp_stream stream(io);
-  error_code code = connect_stream(io, stream, daemon);
+  error_code code = connect_stream(io, stream, daemon.endpoint);
   if (code) return connection_error(daemon, code);
 
-  http::request<http::empty_body> request(http::verb::get, target, 11);
-  request.set(http::field::host, daemon.text());
+  http::request<http::empty_body> request(http::verb::get, daemon.path + target, 11);
+  request.set(http::field::host, daemon.endpoint.text());
+  show_token(daemon, request);
   request.set(http::field::user_agent, "kinemap");
   request.set(http::field::connection, "close");
   stream.expires_after(kPatience);
@@ -83,13 +97,29 @@ Result<std::string> http_get(const Endpoint& daemon, const std::string& target) 
     return error;
   }
   http::response<http::string_body> response = parser.release();
+  if (response.result() == http::status::unauthorized)
+    return Error{
+        daemon.text() + ": " + message_of(response) +
+        (daemon.token.empty() ? "; put its token into KINEMAP_TOKEN" : "; KINEMAP_TOKEN is not the right one")};
   if (response.result() != http::status::ok) return Error{daemon.text() + target + ": " + message_of(response)};
   return std::move(response.body());
 }
 
+std::string url_encoded(const std::string& text) {
+  constexpr std::string_view kPlain = "-._~,";  // the comma may stand in a query, and reads better
+  std::string encoded;
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || kPlain.find(c) != std::string_view::npos)
+      encoded += c;
+    else
+      encoded += format("%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  }
+  return encoded;
+}
+
 class StreamClient::Impl {
  public:
-  explicit Impl(Endpoint daemon) : daemon_(std::move(daemon)), socket_(io_) {}
+  explicit Impl(DaemonAddress daemon) : daemon_(std::move(daemon)), socket_(io_) {}
 
   ~Impl() {
     if (!reading_) return;
@@ -100,7 +130,7 @@ class StreamClient::Impl {
   }
 
   std::optional<Error> open(const std::string& subscribe) {
-    error_code code = connect_stream(io_, beast::get_lowest_layer(socket_), daemon_);
+    error_code code = connect_stream(io_, beast::get_lowest_layer(socket_), daemon_.endpoint);
     if (code) return connection_error(daemon_, code);
     beast::get_lowest_layer(socket_).expires_never();
     auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::client);
@@ -109,7 +139,10 @@ class StreamClient::Impl {
     timeouts.keep_alive_pings = true;
     socket_.set_option(timeouts);
     socket_.read_message_max(kMaxMessageBytes);
-    socket_.async_handshake(daemon_.text(), "/api/v1/stream", [&](const error_code& result) { code = result; });
+    socket_.set_option(
+        websocket::stream_base::decorator([this](websocket::request_type& request) { show_token(daemon_, request); }));
+    socket_.async_handshake(daemon_.endpoint.text(), daemon_.path + "/api/v1/stream",
+                            [&](const error_code& result) { code = result; });
     if (wait(io_, code)) return connection_error(daemon_, code);
     socket_.async_write(asio::buffer(subscribe), [&](const error_code& result, std::size_t) { code = result; });
     if (wait(io_, code)) return connection_error(daemon_, code);
@@ -138,7 +171,7 @@ class StreamClient::Impl {
   }
 
  private:
-  Endpoint daemon_;
+  DaemonAddress daemon_;
   asio::io_context io_;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_;
@@ -147,7 +180,7 @@ class StreamClient::Impl {
   bool done_ = false;
 };
 
-Result<StreamClient> StreamClient::connect(const Endpoint& daemon, const std::string& subscribe) {
+Result<StreamClient> StreamClient::connect(const DaemonAddress& daemon, const std::string& subscribe) {
   auto impl = std::make_unique<Impl>(daemon);
   if (auto error = impl->open(subscribe)) return *error;
   return StreamClient(std::move(impl));

@@ -7,20 +7,22 @@
 #include <optional>
 #include <string>
 
-#include "tools/kinemap/endpoint.hpp"
+#include "tools/kinemap/daemon_address.hpp"
 
 namespace kinemap::cli {
 
-inline constexpr std::uint16_t kApiPort = 8765;
+/// The body of GET `target`. An Error says what to do: daemon not running, wrong port, a token that is missing, or the
+/// daemon's own message.
+Result<std::string> http_get(const DaemonAddress& daemon, const std::string& target);
 
-/// The body of GET `target`. An Error says what to do: daemon not running, wrong port, or the daemon's own message.
-Result<std::string> http_get(const Endpoint& daemon, const std::string& target);
+/// Text as it may stand in a URL's query: all but letters, digits, commas and -._~ as %XX.
+std::string url_encoded(const std::string& text);
 
 /// One WebSocket connection to the daemon's /api/v1/stream.
 class StreamClient {
  public:
   /// Connects and sends `subscribe` (a JSON text) first.
-  static Result<StreamClient> connect(const Endpoint& daemon, const std::string& subscribe);
+  static Result<StreamClient> connect(const DaemonAddress& daemon, const std::string& subscribe);
   ~StreamClient();
   StreamClient(StreamClient&&) noexcept;
   StreamClient& operator=(StreamClient&&) noexcept;

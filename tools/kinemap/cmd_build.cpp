@@ -141,7 +141,7 @@ int build(const Options& options) {
   const double total = result->times.total_s();
   std::string names;
   for (const Export& file : exports()) names += std::string(names.empty() ? "" : ", ") + file.name;
-  return print("build", report(*result) + object_table(*result->map) + '\n' + object_counts(*result->map) +
+  return print("build", report(*result) + object_table(result->map->objects) + '\n' + object_counts(*result->map) +
                             format("\n%.2f s: %.0f × real time (read %.2f s, track %.2f s, map %.2f s)\n", total,
                                    result->recording.duration_s / total, result->times.read_s, result->times.track_s,
                                    result->times.map_s) +

@@ -19,7 +19,7 @@ namespace kinemap::cli {
 namespace {
 
 struct Options {
-  std::string host = "127.0.0.1:8765";
+  DaemonOptions daemon;
   std::string file;
   std::string svg;
   bool json = false;
@@ -35,12 +35,12 @@ std::string describe(const MapSnapshot& map, const Options& options) {
     text += plan_text(make_plan(map), std::min(terminal_width(STDOUT_FILENO, 100), kMaxColumns), kMaxRows,
                       ::isatty(STDOUT_FILENO) != 0) +
             '\n';
-  if (!map.objects.empty()) text += object_table(map) + '\n';
+  if (!map.objects.empty()) text += object_table(map.objects) + '\n';
   return text + object_counts(map) + '\n';
 }
 
 int show_map(const Options& options) {
-  const auto daemon = parse_endpoint(options.host, "127.0.0.1", kApiPort);
+  const auto daemon = daemon_of(options.daemon);
   if (!daemon) return fail("map", daemon.error(), kUsage);
   const auto map = options.file.empty() ? fetch_map(*daemon) : read_map_files(options.file);
   if (!map) return fail("map", map.error());
@@ -59,16 +59,14 @@ void add_map(CLI::App& app, Run& run) {
   CLI::App* command =
       add_command(app, run, "map", "The map as a floor plan and a table: of a running kinemapd, or of a file",
                   "  kinemap map                                    of the daemon on this machine\n"
-                  "  kinemap map --host wearable.local:8765 --svg plan.svg\n"
+                  "  kinemap map --url http://wearable.local:8765 --svg plan.svg\n"
                   "  kinemap map --file out/map.json --json | jq '.objects[] | select(.type == \"table\")'\n"
                   "\nThe plan is turned so that the walls run level and upright; positions in the table are in the\n"
                   "map frame. The path is drawn where it is known (trajectory.tum beside the file, or the daemon's).",
                   options, show_map);
-  CLI::Option* host = command->add_option("--host", options->host, "API address of kinemapd")
-                          ->capture_default_str()
-                          ->type_name("HOST:PORT");
+  CLI::Option* url = add_daemon_options(*command, options->daemon);
   command->add_option("--file", options->file, "map.json, or the directory that 'kinemap build' wrote")
-      ->excludes(host)
+      ->excludes(url)
       ->type_name("FILE");
   command->add_option("--svg", options->svg, "Also draw the plan into an SVG file")->type_name("FILE");
   command->add_flag("--no-plan", options->no_plan, "Leave the drawing out, list only");

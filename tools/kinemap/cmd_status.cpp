@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string host = "127.0.0.1:8765";
+  DaemonOptions daemon;
   bool json = false;
 };
 
@@ -47,7 +47,7 @@ void append(const Json& group, const std::string& indent, std::string& text) {
 }
 
 int status(const Options& options) {
-  const auto daemon = parse_endpoint(options.host, "127.0.0.1", kApiPort);
+  const auto daemon = daemon_of(options.daemon);
   if (!daemon) return fail("status", daemon.error(), kUsage);
   const auto body = http_get(*daemon, "/api/v1/status");
   if (!body) return fail("status", body.error());
@@ -66,11 +66,9 @@ void add_status(CLI::App& app, Run& run) {
   CLI::App* command =
       add_command(app, run, "status", "How a running kinemapd is: stream, counters of everything dropped, map",
                   "  kinemap status\n"
-                  "  kinemap status --host wearable.local:8765 --json\n",
+                  "  kinemap status --url http://wearable.local:8765 --json\n",
                   options, status);
-  command->add_option("--host", options->host, "API address of kinemapd")
-      ->capture_default_str()
-      ->type_name("HOST:PORT");
+  add_daemon_options(*command, options->daemon);
   command->add_flag("--json", options->json, "Print the daemon's answer as it is");
 }
 

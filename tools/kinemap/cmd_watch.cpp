@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 
 struct Options {
-  std::string host = "127.0.0.1:8765";
+  DaemonOptions daemon;
   std::vector<std::string> topics = {"map", "events"};
   bool once = false;
   bool json = false;
@@ -33,7 +33,7 @@ std::optional<Error> follow(StreamClient& stream, const Options& options, int& e
 }
 
 int watch(const Options& options) {
-  const auto daemon = parse_endpoint(options.host, "127.0.0.1", kApiPort);
+  const auto daemon = daemon_of(options.daemon);
   if (!daemon) return fail("watch", daemon.error(), kUsage);
   const std::string subscribe = nlohmann::json{{"op", "subscribe"}, {"topics", options.topics}}.dump();
   catch_stop_signals();
@@ -64,13 +64,11 @@ void add_watch(CLI::App& app, Run& run) {
   CLI::App* command =
       add_command(app, run, "watch", "Follow a running kinemapd: objects and gestures as they come",
                   "  kinemap watch\n"
-                  "  kinemap watch --topics map,events,status --host wearable.local:8765\n"
+                  "  kinemap watch --topics map,events,status --url http://wearable.local:8765\n"
                   "  kinemap watch --topics pose --json | jq .data.position\n"
                   "\n+ is new, ~ has changed by 2 cm or more, - is gone. The connection is made again when it is lost.",
                   options, watch);
-  command->add_option("--host", options->host, "API address of kinemapd")
-      ->capture_default_str()
-      ->type_name("HOST:PORT");
+  add_daemon_options(*command, options->daemon);
   command->add_option("--topics", options->topics, "map, events, status, pose")
       ->capture_default_str()
       ->delimiter(',')

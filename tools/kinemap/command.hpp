@@ -18,6 +18,8 @@ void add_sim(CLI::App& app, Run& run);
 void add_replay(CLI::App& app, Run& run);
 void add_build(CLI::App& app, Run& run);
 void add_map(CLI::App& app, Run& run);
+void add_objects(CLI::App& app, Run& run);
+void add_export(CLI::App& app, Run& run);
 void add_status(CLI::App& app, Run& run);
 void add_watch(CLI::App& app, Run& run);
 void add_optimize(CLI::App& app, Run& run);

@@ -18,11 +18,12 @@ int main(int argc, char** argv) {
       "  kinemap sim --seed 1 --out session\n"
       "  kinemap build session/session.pcap --out map\n"
       "  kinemap eval map --truth session/truth.json\n"
-      "  kinemap map --file map/map.json --svg plan.svg\n"
+      "  kinemap map --file map\n"
       "\n'kinemap COMMAND --help' explains each command. Exit codes: 0 done, 1 bad input or failure, 2 wrong usage or "
       "configuration.");
   Run run;
-  for (const auto add : {add_sim, add_replay, add_build, add_map, add_status, add_watch, add_optimize, add_eval})
+  for (const auto add : {add_sim, add_replay, add_build, add_map, add_objects, add_export, add_status, add_watch,
+                         add_optimize, add_eval})
     add(app, run);
   const auto is_asked = [&](const CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_asked).empty())

@@ -29,18 +29,22 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string object_table(const MapSnapshot& map) {
-  if (map.objects.empty()) return "";
+std::string object_table(std::span<const MapObject> objects, std::span<const double> distances) {
+  if (objects.empty()) return "";
+  const bool far = distances.size() == objects.size();
   std::vector<std::vector<std::string>> rows = {
       {"id", "type", "size m", "x", "y", "z", "heading°", "±m", "seen", "for"}};
+  if (far) rows[0].push_back("distance m");
   bool assumed = false;
-  for (const MapObject& object : map.objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const MapObject& object = objects[i];
     const Eigen::Vector3d& p = object.pose.p;
     const double sigma = object.sigma.position_m;
     rows.push_back({std::to_string(object.id), to_string(object.type), size_text(object), format("%.2f", p.x()),
                     format("%.2f", p.y()), format("%.2f", p.z()), heading_text(object),
                     sigma > 0.0 ? format("%.2f", sigma) : "", std::to_string(object.observations),
                     joined(object.functions)});
+    if (far) rows.back().push_back(format("%.2f", distances[i]));
     assumed = assumed || object.height_assumed;
   }
   std::string text = text_table(rows, {1, 9});

@@ -24,7 +24,7 @@ std::optional<Error> read_trajectory(const std::string& text, std::vector<Trajec
 
 }  // namespace
 
-Result<MapSnapshot> fetch_map(const Endpoint& daemon) {
+Result<MapSnapshot> fetch_map(const DaemonAddress& daemon) {
   const auto text = http_get(daemon, "/api/v1/map");
   if (!text) return Error{text.error()};
   auto map = map_from_text(*text);

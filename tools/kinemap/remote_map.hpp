@@ -2,11 +2,11 @@
 #pragma once
 
 #include "core/map.hpp"
-#include "tools/kinemap/endpoint.hpp"
+#include "tools/kinemap/daemon_address.hpp"
 
 namespace kinemap::cli {
 
 /// The map of a running daemon, with its optimised trajectory (T_map_pelvis only).
-Result<MapSnapshot> fetch_map(const Endpoint& daemon);
+Result<MapSnapshot> fetch_map(const DaemonAddress& daemon);
 
 }  // namespace kinemap::cli

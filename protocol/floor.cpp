@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 
 #include "core/mapper/polygon.hpp"
 
@@ -43,16 +44,16 @@ Eigen::Vector2d nearest(const Eigen::Vector2d& p, const Eigen::Vector2d& a, cons
 /// Marks the cells whose middle is within reach of the way from a to b, with no wall in between.
 void mark(CellGrid& grid, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach_m,
           std::span<const WallStretch> walls) {
-  const Eigen::Vector2d between = (a + b) / 2;
+  const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
   std::vector<const WallStretch*> near;
   for (const WallStretch& wall : walls)
-    if (!wall.open && (nearest(between, wall.a, wall.b) - between).norm() < reach_m + (b - a).norm() / 2)
+    if (!wall.open && (wall.a.cwiseMin(wall.b) - high).maxCoeff() < 0.0 &&
+        (low - wall.a.cwiseMax(wall.b)).maxCoeff() < 0.0)
       near.push_back(&wall);
   const auto index = [&](double p, double origin, std::size_t count) {
     return static_cast<std::size_t>(
         std::clamp(std::floor((p - origin) / grid.cell_m), 0.0, static_cast<double>(count - 1)));
   };
-  const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
   const std::size_t last_row = index(high.y(), grid.origin.y(), grid.rows);
   const std::size_t last_column = index(high.x(), grid.origin.x(), grid.columns);
   for (std::size_t row = index(low.y(), grid.origin.y(), grid.rows); row <= last_row; ++row)
@@ -76,6 +77,23 @@ double floor_height(const MapSnapshot& map, const Room* room) {
     for (const Eigen::Vector3d& corner : *object.corners) z = std::min(z.value_or(corner.z()), corner.z());
   }
   return z.value_or(0.0);
+}
+
+std::vector<double> floor_heights(const MapSnapshot& map) {
+  std::unordered_map<std::uint32_t, double> lowest;
+  for (const MapObject& object : map.objects) {
+    if (object.type != ObjectType::Wall || !object.corners) continue;
+    double& z = lowest.emplace(object.id, object.corners->front().z()).first->second;
+    for (const Eigen::Vector3d& corner : *object.corners) z = std::min(z, corner.z());
+  }
+  std::vector<double> heights;
+  for (const Room& room : map.rooms) {
+    std::optional<double> z;
+    for (const std::uint32_t id : room.wall_ids)
+      if (const auto wall = lowest.find(id); wall != lowest.end()) z = std::min(z.value_or(wall->second), wall->second);
+    heights.push_back(z.value_or(0.0));
+  }
+  return heights;
 }
 
 CellGrid walked_floor(std::span<const TrajectoryPose> trajectory, double cell_m, double reach_m,

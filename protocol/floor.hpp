@@ -28,6 +28,9 @@ struct CellGrid {
 /// without walls.
 double floor_height(const MapSnapshot& map, const Room* room = nullptr);
 
+/// The same for every room of the map, by index: in one pass, as large maps need it.
+std::vector<double> floor_heights(const MapSnapshot& map);
+
 /// The floor within `reach_m` of the level way of the pelvis: no furniture stands there. The grid ends where the walked
 /// floor ends; its origin is a multiple of the cell. Cells are doubled until there are at most a million. Key poses
 /// more than 2 m apart (the suit was restarted in between) are not joined. What lies behind one of the `walls` as seen

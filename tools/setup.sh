@@ -27,6 +27,7 @@ if [[ $tests == yes ]]; then
   packages+=(
     chromium                                                # the live page is tested in it
     libsdformat-dev librsvg2-bin python3-pil python3-yaml   # exports are read with them
+    groff-base                                              # the manual pages are
   )
 fi
 

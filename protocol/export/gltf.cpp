@@ -48,10 +48,10 @@ Mesh seat_mesh(const Pose& pose) {
 }
 
 /// What of a wall is left between its doorways.
-Mesh wall_mesh(const std::vector<WallStretch>& stretches, std::uint32_t id) {
+Mesh wall_mesh(std::span<const WallStretch> stretches) {
   Mesh mesh;
   for (const WallStretch& wall : stretches) {
-    if (wall.wall_id != id || wall.open) continue;
+    if (wall.open) continue;
     const auto corner = [](const Eigen::Vector2d& p, double z) { return Eigen::Vector3d(p.x(), p.y(), z); };
     const Eigen::Vector2d normal = wall.normal();
     append(mesh, gltf::slab({corner(wall.b, wall.bottom_z), corner(wall.a, wall.bottom_z), corner(wall.a, wall.top_z),
@@ -84,7 +84,7 @@ Mesh floor_mesh(const Room& room, double z) {
 Mesh mesh_of(const MapObject& object, const std::vector<WallStretch>& walls) {
   if (object.type == ObjectType::Chair) return seat_mesh(object.pose);
   if (!object.plane || !object.corners) return {};
-  return object.type == ObjectType::Wall ? wall_mesh(walls, object.id) : planar_mesh(object);
+  return object.type == ObjectType::Wall ? wall_mesh(stretches_of(walls, object.id)) : planar_mesh(object);
 }
 
 }  // namespace
@@ -92,9 +92,10 @@ Mesh mesh_of(const MapObject& object, const std::vector<WallStretch>& walls) {
 std::string glb_bytes(const MapSnapshot& map) {
   gltf::Builder builder;
   const std::vector<WallStretch> walls = wall_stretches(map);
-  for (const Room& room : map.rooms)
-    if (const Mesh mesh = floor_mesh(room, floor_height(map, &room)); !mesh.indices.empty())
-      builder.add_node("room " + std::to_string(room.id), mesh, kFloor, to_json(room));
+  const std::vector<double> floors = floor_heights(map);
+  for (std::size_t i = 0; i < map.rooms.size(); ++i)
+    if (const Mesh mesh = floor_mesh(map.rooms[i], floors[i]); !mesh.indices.empty())
+      builder.add_node("room " + std::to_string(map.rooms[i].id), mesh, kFloor, to_json(map.rooms[i]));
   for (const MapObject& object : map.objects) {
     const std::string name = std::string(to_string(object.type)) + " " + std::to_string(object.id);
     builder.add_node(name, mesh_of(object, walls), kMaterials[static_cast<std::size_t>(object.type)], to_json(object));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/mapper/polygon.hpp"
@@ -53,7 +54,9 @@ double readable(const Eigen::Vector2d& along) {
 
 class Drawing {
  public:
-  explicit Drawing(const Plan& plan) : plan_(plan), page_(plan.low, plan.high, kMargin, kFooter) {}
+  explicit Drawing(const Plan& plan) : plan_(plan), page_(plan.low, plan.high, kMargin, kFooter) {
+    for (const Plan::Item& item : plan.items) details_[item.id] = item.detail;
+  }
 
   std::string svg() {
     for (const Plan::Floor& room : plan_.rooms) page_.polygon(room.polygon, "room");
@@ -101,10 +104,7 @@ class Drawing {
       page_.line(wall.a, wall.b, "inferred", "inferred: nobody touched it, but there must be a wall");
     } else {
       const auto corners = wall.outline(kWallThickness);
-      const auto item = std::find_if(plan_.items.begin(), plan_.items.end(), [&](const Plan::Item& i) {
-        return i.type == ObjectType::Wall && i.id == wall.wall_id;
-      });
-      page_.polygon({corners.begin(), corners.end()}, "wall", item == plan_.items.end() ? "" : item->detail);
+      page_.polygon({corners.begin(), corners.end()}, "wall", details_[wall.wall_id]);
     }
   }
 
@@ -238,6 +238,7 @@ class Drawing {
   }
 
   const Plan& plan_;
+  std::map<std::uint32_t, std::string> details_;  // by the object's id
   SvgPage page_;
 };
 

@@ -88,28 +88,37 @@ Box screen(const MapObject& object) {
           {kSlab, 2 * extent.y(), 2 * extent.z()}};
 }
 
+/// What the models of all objects need to know.
+struct Scene {
+  const MapSnapshot& map;
+  std::vector<WallStretch> walls;
+  std::vector<double> floors;  ///< of the rooms, by index
+  double lowest = 0.0;
+};
+
 /// The floor on which something at `p` stands.
-double floor_below(const MapSnapshot& map, const Eigen::Vector3d& p) {
-  double floor = floor_height(map);
-  for (const Room& room : map.rooms)
-    if (const double z = floor_height(map, &room); z < p.z() && contains(room.polygon, p.head<2>()))
-      floor = std::max(floor, z);
+double floor_below(const Scene& scene, const Eigen::Vector3d& p) {
+  double floor = scene.lowest;
+  for (std::size_t i = 0; i < scene.floors.size(); ++i)
+    if (scene.floors[i] > floor && scene.floors[i] < p.z() && contains(scene.map.rooms[i].polygon, p.head<2>()))
+      floor = scene.floors[i];
   return floor;
 }
 
-std::string model_of(const MapSnapshot& map, const MapObject& object, const std::vector<WallStretch>& walls) {
+std::string model_of(const Scene& scene, const MapObject& object) {
   const std::string name = std::string(to_string(object.type)) + '_' + std::to_string(object.id);
-  const double floor = floor_below(map, object.pose.p);
-  if (object.type == ObjectType::Chair) return model(name, object.pose, chair(object.pose, floor), "0.38 0.68 0.54 1");
+  if (object.type == ObjectType::Chair)
+    return model(name, object.pose, chair(object.pose, floor_below(scene, object.pose.p)), "0.38 0.68 0.54 1");
   if (!object.plane || !object.corners || !object.size) return "";  // nothing is known of its extent
   if (object.type == ObjectType::Table) {
     const auto& [length, width] = *object.size;
+    const double floor = floor_below(scene, object.pose.p);
     return model(name, object.pose, on_legs(object.pose, length, width, floor), "0.77 0.61 0.41 1");
   }
   if (object.type == ObjectType::Screen) return model(name, object.pose, {screen(object)}, "0.19 0.33 0.48 1");
   std::vector<Box> boxes;
-  for (const WallStretch& wall : walls)
-    if (wall.wall_id == object.id && !wall.open) boxes.push_back(box_of(wall));
+  for (const WallStretch& wall : stretches_of(scene.walls, object.id))
+    if (!wall.open) boxes.push_back(box_of(wall));
   return model(name, object.pose, boxes, "0.85 0.87 0.89 1");
 }
 
@@ -133,16 +142,16 @@ constexpr const char* kSurroundings = R"(    <light name="sun" type="directional
 }  // namespace
 
 std::string world_sdf(const MapSnapshot& map) {
-  const std::vector<WallStretch> walls = wall_stretches(map);
+  const Scene scene{map, wall_stretches(map), floor_heights(map), floor_height(map)};
   std::string text = format(
       "<?xml version=\"1.0\"?>\n<!-- Kinemap, map revision %llu -->\n<sdf version=\"1.7\">\n"
       "  <world name=\"kinemap\">\n",
       static_cast<unsigned long long>(map.revision));
-  text += format(kSurroundings, floor_height(map));
-  for (const MapObject& object : map.objects) text += model_of(map, object, walls);
+  text += format(kSurroundings, scene.lowest);
+  for (const MapObject& object : map.objects) text += model_of(scene, object);
   int number = 0;
-  for (const WallStretch& wall : walls)
-    if (wall.wall_id == 0 && !wall.open)
+  for (const WallStretch& wall : stretches_of(scene.walls, 0))
+    if (!wall.open)
       text +=
           model("inferred_wall_" + std::to_string(++number), box_of(wall).T_map_box, {box_of(wall)}, "0.7 0.72 0.76 1");
   return text + "  </world>\n</sdf>\n";

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLetterWidth = 7.0;  // pixels, on average, of the labels' 12 px type
 constexpr double kLineHeight = 15.0;
+constexpr double kSquare = 128.0;  // pixels
 constexpr double kSampling = 8.0;  // pixels between the boxes that stand for a line
 
 std::string title_of(const std::string& title) { return title.empty() ? "/>\n" : "><title>" + title + "</title>"; }
@@ -90,7 +91,7 @@ void SvgPage::reserve_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, c
   const int steps = std::max(1, static_cast<int>(way.norm() / kSampling));
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d at = p + way * i / steps;
-    taken_.push_back({at - half, at + half, owner});
+    take({at - half, at + half, owner});
   }
 }
 
@@ -100,7 +101,18 @@ void SvgPage::reserve_box(const std::vector<Eigen::Vector2d>& corners, const voi
     box.low = box.low.cwiseMin(pixel(corner));
     box.high = box.high.cwiseMax(pixel(corner));
   }
-  taken_.push_back(box);
+  take(box);
+}
+
+template <class Visit>
+void SvgPage::squares(const Box& box, Visit visit) {
+  const Eigen::Array2d first = (box.low / kSquare).array().floor(), last = (box.high / kSquare).array().floor();
+  for (int x = static_cast<int>(first.x()); x <= static_cast<int>(last.x()); ++x)
+    for (int y = static_cast<int>(first.y()); y <= static_cast<int>(last.y()); ++y) visit(std::pair(x, y));
+}
+
+void SvgPage::take(const Box& box) {
+  squares(box, [&](const std::pair<int, int>& square) { taken_[square].push_back(box); });
 }
 
 double SvgPage::crowding(const std::vector<std::string>& lines, const Spot& spot, const void* owner) const {
@@ -110,8 +122,17 @@ double SvgPage::crowding(const std::vector<std::string>& lines, const Spot& spot
     return shared.x() > 0.0 && shared.y() > 0.0 ? shared.x() * shared.y() : 0.0;
   };
   double sum = (box.high - box.low).prod() - overlap({0.0, 0.0}, {width_, height_});
-  for (const Box& other : taken_)
-    if (!owner || other.owner != owner) sum += overlap(other.low, other.high);
+  squares(box, [&](const std::pair<int, int>& square) {
+    const auto here = taken_.find(square);
+    if (here == taken_.end()) return;
+    for (const Box& other : here->second) {
+      // Boxes in several squares count in the one that has the corner of what they share.
+      const Eigen::Vector2d corner = box.low.cwiseMax(other.low) / kSquare;
+      if (square != std::pair(static_cast<int>(std::floor(corner.x())), static_cast<int>(std::floor(corner.y()))))
+        continue;
+      if (!owner || other.owner != owner) sum += overlap(other.low, other.high);
+    }
+  });
   return sum;
 }
 
@@ -124,9 +145,10 @@ SvgPage::Spot SvgPage::label(const std::vector<std::string>& lines, const char* 
     if (crowded >= least) continue;
     least = crowded;
     best = &spot;
+    if (least <= 0.0) break;
   }
   text(lines, style, *best);
-  taken_.push_back(box_of(lines, *best));
+  take(box_of(lines, *best));
   return *best;
 }
 

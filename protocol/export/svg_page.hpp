@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinemap {
@@ -64,7 +66,11 @@ class SvgPage {
   Eigen::Vector2d low_, high_;
   double margin_, width_, height_;
   std::string body_;
-  std::vector<Box> taken_;
+  void take(const Box& box);
+  /// A function of each pair of numbers (column, row) of the squares of the page that a box touches.
+  template <class Visit>
+  static void squares(const Box& box, Visit visit);
+  std::map<std::pair<int, int>, std::vector<Box>> taken_;  // by square: large plans have many boxes
 };
 
 }  // namespace kinemap

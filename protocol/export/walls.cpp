@@ -60,11 +60,17 @@ void add_cut(const WallStretch& wall, const std::vector<Doorway>& doorways, std:
 
 /// Lets the backs of walls meet where their faces do.
 void mitre(std::vector<WallStretch>& stretches) {
+  std::vector<WallStretch*> by_begin;
+  for (WallStretch& wall : stretches) by_begin.push_back(&wall);
+  const auto x_of = [](const WallStretch* wall) { return wall->a.x(); };
+  std::ranges::stable_sort(by_begin, {}, x_of);
   for (WallStretch& first : stretches)
-    for (WallStretch& second : stretches) {
-      if (&first == &second || (first.wall_id == 0) != (second.wall_id == 0) ||
-          (first.b - second.a).norm() > kSameCorner)
-        continue;
+    for (auto at = std::ranges::lower_bound(by_begin, first.b.x() - kSameCorner, {}, x_of); at != by_begin.end();
+         ++at) {
+      WallStretch& second = **at;
+      if (second.a.x() > first.b.x() + kSameCorner) break;
+      if (&first == &second || (first.wall_id == 0) != (second.wall_id == 0)) continue;
+      if ((first.b - second.a).norm() > kSameCorner) continue;
       const double turn = std::atan2(cross(first.along(), second.along()), first.along().dot(second.along()));
       if (std::abs(turn) < kSharpestCorner) first.mitre_b = second.mitre_a = std::tan(turn / 2);
     }
@@ -88,6 +94,18 @@ std::array<Eigen::Vector2d, 2> ends_of(const MapObject& upright) {
 
 std::vector<WallStretch> wall_stretches(const MapSnapshot& map) {
   std::vector<WallStretch> stretches;
+  const std::vector<double> floors = floor_heights(map);
+  for (std::size_t i = 0; i < map.rooms.size(); ++i)
+    for (const std::size_t side : map.rooms[i].inferred_sides) {
+      const auto& polygon = map.rooms[i].polygon;
+      if (side >= polygon.size()) continue;
+      WallStretch wall;
+      wall.a = polygon[side];
+      wall.b = polygon[(side + 1) % polygon.size()];
+      wall.bottom_z = floors[i];
+      wall.top_z = wall.bottom_z + map.rooms[i].height_m;
+      add_cut(wall, map.doorways, stretches);
+    }
   for (const MapObject& object : map.objects) {
     if (object.type != ObjectType::Wall || !object.plane || !object.corners) continue;
     WallStretch wall;
@@ -101,18 +119,12 @@ std::vector<WallStretch> wall_stretches(const MapSnapshot& map) {
     }
     add_cut(wall, map.doorways, stretches);
   }
-  for (const Room& room : map.rooms)
-    for (const std::size_t side : room.inferred_sides) {
-      if (side >= room.polygon.size()) continue;
-      WallStretch wall;
-      wall.a = room.polygon[side];
-      wall.b = room.polygon[(side + 1) % room.polygon.size()];
-      wall.bottom_z = floor_height(map, &room);
-      wall.top_z = wall.bottom_z + room.height_m;
-      add_cut(wall, map.doorways, stretches);
-    }
   mitre(stretches);
   return stretches;
+}
+
+std::span<const WallStretch> stretches_of(std::span<const WallStretch> stretches, std::uint32_t wall_id) {
+  return std::ranges::equal_range(stretches, wall_id, {}, &WallStretch::wall_id);
 }
 
 }  // namespace kinemap

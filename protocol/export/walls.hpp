@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/map.hpp"
@@ -33,8 +34,11 @@ struct WallStretch {
   [[nodiscard]] std::array<Eigen::Vector2d, 4> outline(double thickness) const;
 };
 
-/// All walls by id, each from one end to the other, then the inferred sides of the rooms.
+/// The inferred sides of the rooms (id 0), then all walls by id, each from one end to the other.
 std::vector<WallStretch> wall_stretches(const MapSnapshot& map);
+
+/// Those of one wall.
+std::span<const WallStretch> stretches_of(std::span<const WallStretch> stretches, std::uint32_t wall_id);
 
 /// The ends of an upright object's face seen from above, its normal on the left of the way from the first to the
 /// second. The object must have a plane and corners.

@@ -311,7 +311,7 @@ class OneAnswer {
 
 TEST_F(Cli, TheTokenIsShownAndAPathKept) {
   OneAnswer daemon(
-      "HTTP/1.1 401 Unauthorized\r\nContent-Length: 37\r\n\r\n{\"error\": {\"message\": \"who is there\"}}");
+      "HTTP/1.1 401 Unauthorized\r\nContent-Length: 38\r\n\r\n{\"error\": {\"message\": \"who is there\"}}");
   const Ran ran = run_command({"/usr/bin/env", "KINEMAP_TOKEN=s3cret", "KINEMAP_URL=" + daemon.url() + "/kinemap/",
                                KINEMAP_BIN, "objects", "--near", "1,-2", "--function", "a b"});
   const string request = daemon.request();

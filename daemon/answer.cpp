@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "protocol/json_text.hpp"
+
 namespace kinemap {
 
 std::string error_text(const ApiError& error) {
@@ -16,7 +18,7 @@ std::string error_text(const ApiError& error) {
   for (const auto& [name, text] : details)
     if (!text->empty()) json[name] = *text;
   // What the client sent may hold anything: bytes that are no UTF-8 are replaced.
-  return Json{{"error", std::move(json)}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return compact_text({{"error", std::move(json)}});
 }
 
 Reply error_reply(const ApiError& error) {

@@ -48,6 +48,10 @@ void Api::add_routes() {
       [this](const Call& call) { return reply_of(query_objects(*sources_.map(), call.params)); });
   add("/api/v1/objects/{id}", "One object.", {}, "object",
       [this](const Call& call) { return reply_of(query_object(*sources_.map(), call.id)); });
+  add("/api/v1/rooms", "Every room, with the objects in it.", {}, "rooms",
+      [this](const Call&) { return reply_of(query_rooms(*sources_.map())); });
+  add("/api/v1/rooms/{id}", "One room.", {}, "room",
+      [this](const Call& call) { return reply_of(query_room(*sources_.map(), call.id)); });
   add("/api/v1/trajectory", "The optimised key poses of the pelvis.", trajectory_params(), "trajectory",
       [this](const Call& call) { return reply_of(query_trajectory(*sources_.map(), call.params)); });
   add("/api/v1/pose", "Where the wearer is now.", {}, "pose_now",
@@ -89,20 +93,29 @@ Reply Api::query(std::string_view path, const Params& params) {
   return reply;
 }
 
-Reply Api::http(std::string_view method, std::string_view target) {
+HttpAnswer Api::http(const HttpRequest& request) {
   ++counts_.requests;
-  const auto parsed = parse_target(target);
-  Reply reply;
-  if (!parsed) {
-    reply = error_reply({400, "bad_target", "the request's target is not a path with well-formed %XX escapes"});
-  } else if (method != "GET" && method != "HEAD") {
-    reply = error_reply({405, "method_not_allowed", "only GET and HEAD: the map is for reading"});
-    reply.allow = "GET, HEAD";
-  } else {
-    reply = routes_.answer(parsed->path, parsed->params);
-  }
+  Reply reply = get(request);
   if (reply.status >= 400) ++counts_.errors;
-  return reply;
+  return http_answer(std::move(reply), request, gzip_);
+}
+
+HttpAnswer Api::refuse(const ApiError& error) {
+  ++counts_.errors;
+  return http_answer(error_reply(error), {}, gzip_);
+}
+
+Reply Api::get(const HttpRequest& request) {
+  const auto target = parse_target(request.target);
+  if (!target)
+    return error_reply({400, "bad_target", "the request's target is not a path with well-formed %XX escapes"});
+  if (!routes_.find(target->path)) return error_reply(routes_.unknown(target->path));
+  if (request.method != "GET" && request.method != "HEAD") {
+    Reply reply = error_reply({405, "method_not_allowed", "only GET and HEAD: the map is for reading"});
+    reply.allow = "GET, HEAD";
+    return reply;
+  }
+  return routes_.answer(target->path, target->params);
 }
 
 }  // namespace kinemap

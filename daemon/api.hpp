@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "daemon/answer.hpp"
+#include "daemon/http_answer.hpp"
 #include "daemon/live_events.hpp"
 #include "daemon/map_history.hpp"
 #include "daemon/routes.hpp"
@@ -24,7 +25,9 @@ class Api {
   Api& operator=(const Api&) = delete;
 
   /// One HTTP request; HEAD is answered as GET (who sends it leaves out the body).
-  Reply http(std::string_view method, std::string_view target);
+  HttpAnswer http(const HttpRequest& request);
+  /// The answer to a request that is refused before its path is looked at.
+  HttpAnswer refuse(const ApiError& error);
   /// The same questions by path, below /api/v1/ ("objects", "objects/7", "pose", …).
   Reply query(std::string_view path, const Params& params);
 
@@ -40,6 +43,7 @@ class Api {
 
  private:
   void add_routes();
+  Reply get(const HttpRequest& request);
   Status status();
 
   Sources sources_;
@@ -50,6 +54,7 @@ class Api {
   Routes routes_;
   MapHistory history_;
   LiveEvents events_;
+  GzipCache gzip_;
   std::chrono::steady_clock::time_point look_due_{};
 };
 

@@ -48,18 +48,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       const auto problem = read_error(error);
       if (!problem) return close();
       keep_alive_ = false;
-      ++context_.api.counts().errors;
-      return send(error_reply(*problem));
+      return send(context_.api.refuse(*problem));
     }
     const auto& request = parser_->get();
     keep_alive_ = request.keep_alive();
     head_ = request.method() == http::verb::head;
     if (const auto problem = refusal(request)) {
-      ++context_.api.counts().errors;
-      return send(error_reply(*problem));
+      return send(context_.api.refuse(*problem));
     }
     if (beast::websocket::is_upgrade(request)) return upgrade();
-    send(context_.api.http(view(request.method_string()), view(request.target())));
+    send(context_.api.http({view(request.method_string()), view(request.target()),
+                            view(request[http::field::if_none_match]), view(request[http::field::accept_encoding])}));
   }
 
   /// What is wrong with a request before its path is looked at.
@@ -112,8 +111,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     serve_foxglove(std::move(stream_), std::move(request), *subprotocol, context_, std::move(slot_));
   }
 
-  void send(Reply reply) {
-    reply_ = std::move(reply);
+  void send(HttpAnswer answer) {
+    answer_ = std::move(answer);
     if (head_) return write<http::empty_body>();
     write<http::span_body<const char>>();
   }
@@ -121,21 +120,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   template <class Body>
   void write() {
     auto response = std::make_shared<http::response<Body>>();
-    response->result(reply_.status);
+    response->result(answer_.status);
     response->version(11);
     response->set(http::field::server, "kinemapd");
-    response->set(http::field::content_type, reply_.content_type);
-    response->set(http::field::cache_control, reply_.immutable ? "public, max-age=31536000, immutable" : "no-store");
+    for (const auto& [name, value] : answer_.headers) response->set(name, value);
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Content-Security-Policy",
                   "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-    if (!reply_.download.empty())
-      response->set(http::field::content_disposition, "attachment; filename=\"" + reply_.download + "\"");
-    if (!reply_.allow.empty()) response->set(http::field::allow, reply_.allow);
     response->keep_alive(keep_alive_);
-    response->content_length(reply_.body->size());
+    if (answer_.status != 304) response->content_length(answer_.body->size());
     if constexpr (!std::is_same_v<Body, http::empty_body>)
-      response->body() = {reply_.body->data(), reply_.body->size()};
+      response->body() = {answer_.body->data(), answer_.body->size()};
     stream_.expires_after(kWriteTimeout);
     http::async_write(stream_, *response, [self = shared_from_this(), response](ErrorCode error, std::size_t) {
       if (error || !self->keep_alive_) return self->close();
@@ -163,7 +158,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   ConnectionSlot slot_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
-  Reply reply_;  // owns the text while it is being sent
+  HttpAnswer answer_;  // owns the text while it is being sent
   bool keep_alive_ = false;
   bool head_ = false;
 };

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "protocol/json_text.hpp"
 #include "protocol/map_json.hpp"
 
 namespace kinemap {
@@ -12,8 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kCachedDeltas = 32;  // clients are mostly one or two revisions behind
-
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// `json` with `items` put in after the key `key`.
 Json with_after(const Json& json, const char* key, const Json& items) {
@@ -38,7 +37,7 @@ template <class List>
 void MapHistory::note(const List& list, Kind kind, Items& items) {
   Items now;
   for (const auto& thing : list) {
-    Item item{text_of(to_json(thing)), map_->revision};
+    Item item{compact_text(to_json(thing)), map_->revision};
     const auto before = items.find(thing.id);
     if (before != items.end() && before->second.text == item.text) item.changed = before->second.changed;
     now.insert_or_assign(thing.id, std::move(item));
@@ -61,14 +60,14 @@ void MapHistory::update(std::shared_ptr<const MapSnapshot> map) {
   lists.unresolved = map_->unresolved;
   const Json json = to_json(lists);
   for (auto [item, name] : {std::pair(&doorways_, "doorways"), std::pair(&unresolved_, "unresolved")}) {
-    std::string text = text_of(json.at(name));
+    std::string text = compact_text(json.at(name));
     if (text != item->text) *item = {std::move(text), map_->revision};
   }
 }
 
 SharedText MapHistory::whole() {
   if (!whole_)
-    whole_ = std::make_shared<const std::string>(text_of(with_after(to_json(*map_), "revision", {{"run", run_}})));
+    whole_ = std::make_shared<const std::string>(compact_text(with_after(to_json(*map_), "revision", {{"run", run_}})));
   return whole_;
 }
 
@@ -84,7 +83,7 @@ std::optional<std::string> MapHistory::unknown(const KnownMap& known) const {
 SharedText MapHistory::since(const KnownMap& known) {
   if (const auto why = unknown(known)) {
     const Json extra = {{"run", run_}, {"note", "the whole map: " + *why}};
-    return std::make_shared<const std::string>(text_of(with_after(to_json(*map_), "revision", extra)));
+    return std::make_shared<const std::string>(compact_text(with_after(to_json(*map_), "revision", extra)));
   }
   const auto cached = deltas_.find(known.revision);
   if (cached != deltas_.end()) return cached->second;
@@ -118,7 +117,7 @@ std::string MapHistory::delta_text(std::uint64_t revision) const {
   json = with_after(json, "rooms", {{"removed", std::move(removed)}});
   if (doorways_.changed <= revision) json.erase("doorways");
   if (unresolved_.changed <= revision) json.erase("unresolved");
-  return text_of(json);
+  return compact_text(json);
 }
 
 }  // namespace kinemap

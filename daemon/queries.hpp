@@ -14,13 +14,17 @@
 /// specification.
 namespace kinemap {
 
-/// Parameters: type (one or several, with commas), function, near=x,y (m, map frame), within (m, needs near), limit.
-/// With `near` the objects come by their level distance from it (to the nearest point of their outline), else by id.
+/// By type, function, place and room; `object_params` has the parameters. With `near` the objects come with their
+/// distance, level (to their outline) or in space (to their surface).
 std::vector<ParamSpec> object_params();
 Answer query_objects(const MapSnapshot& map, const Params& params);
 Answer query_object(const MapSnapshot& map, std::string_view id);
 
-/// The optimised key poses; parameters since, until (s of stream time, both inclusive).
+/// Each room with the ids of the objects in it.
+Answer query_rooms(const MapSnapshot& map);
+Answer query_room(const MapSnapshot& map, std::string_view id);
+
+/// The optimised key poses; parameters since, until (s of stream time, both inclusive), every (s), odometry.
 std::vector<ParamSpec> trajectory_params();
 Answer query_trajectory(const MapSnapshot& map, const Params& params);
 
@@ -39,5 +43,9 @@ Answer query_events(const LiveEvents& events, const Params& params);
 
 /// Level distance (m) from a point of the map frame to the object's outline, 0 inside it.
 double level_distance(const MapObject& object, const Eigen::Vector2d& point);
+/// Distance (m) from a point of the map frame to the object's rectangle; a chair's to the seat's centre.
+double distance(const MapObject& object, const Eigen::Vector3d& point);
+/// Whether it stands in the room or, a wall, bounds it.
+bool is_in_room(const MapObject& object, const Room& room);
 
 }  // namespace kinemap

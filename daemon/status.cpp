@@ -7,6 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "protocol/json_text.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -166,8 +168,6 @@ Json process_json() {
   return json;
 }
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 }  // namespace
 
 bool is_receiving(const ReceiverState& suit) {
@@ -184,19 +184,19 @@ std::string status_text(const Status& status) {
              {"clients", api_json(status.api)},
              {"process", process_json()}});
   if (status.pipeline.has_journal) json["journal"] = journal_json(status.pipeline);
-  return text_of(json);
+  return compact_text(json);
 }
 
 std::string health_text(const Status& status) {
   const std::string transport = status.suit_config.transport == "tcp" ? "TCP " : "UDP ";
   const std::string where = transport + status.suit_config.address + ":" + std::to_string(status.suit_port);
-  if (status.suit.news->refusal) return text_of({{"status", "refused"}, {"message", *status.suit.news->refusal}});
+  if (status.suit.news->refusal) return compact_text({{"status", "refused"}, {"message", *status.suit.news->refusal}});
   if (is_receiving(status.suit))
-    return text_of({{"status", "ok"}, {"message", "receiving from " + status.suit.news->sender}});
+    return compact_text({{"status", "ok"}, {"message", "receiving from " + status.suit.news->sender}});
   const bool ever = status.suit.counts.last_frame_s >= 0.0;
   const std::string message =
       (ever ? "the suit has fallen silent; listening on " : "no suit yet; listening on ") + where;
-  return text_of({{"status", "waiting"}, {"message", message}});
+  return compact_text({{"status", "waiting"}, {"message", message}});
 }
 
 }  // namespace kinemap

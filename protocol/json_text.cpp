@@ -48,4 +48,8 @@ std::string pretty_text(const Json& json) {
   return text;
 }
 
+std::string compact_text(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 }  // namespace kinemap

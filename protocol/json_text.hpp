@@ -11,4 +11,7 @@ namespace kinemap {
 /// is replaced, never thrown at.
 std::string pretty_text(const nlohmann::ordered_json& json);
 
+/// The same for the network: no white space.
+std::string compact_text(const nlohmann::ordered_json& json);
+
 }  // namespace kinemap

@@ -15,7 +15,7 @@ esac
 packages=(
   g++ cmake ninja-build ccache git ca-certificates pkg-config # build
   libeigen3-dev libboost-dev libceres-dev libopenblas-dev     # mathematics, Asio, Beast, Lockfree
-  libspdlog-dev nlohmann-json3-dev libcli11-dev libexpat1-dev # log, JSON, command line, XML
+  libspdlog-dev nlohmann-json3-dev libcli11-dev libexpat1-dev zlib1g-dev # log, JSON, command line, XML, gzip
   libsystemd-dev                                              # readiness, watchdog
   libgtest-dev libgmock-dev libbenchmark-dev                  # tests
   python3-jsonschema                                          # the map's schema is tested with it

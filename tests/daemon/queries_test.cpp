@@ -47,6 +47,7 @@ MapObject wall(std::uint32_t id, double x, double y0, double y1) {
   object.pose = level_pose({x, (y0 + y1) / 2, 1.25}, 0.0);
   using P = Eigen::Vector3d;
   object.corners = {P(x, y0, 0), P(x, y1, 0), P(x, y1, 2.5), P(x, y0, 2.5)};
+  object.size = {y1 - y0, 2.5};
   return object;
 }
 
@@ -54,8 +55,10 @@ MapSnapshot sample_map() {
   MapSnapshot map;
   map.revision = 5;
   map.objects = {wall(1, 10, 0, 8), table(2, 0, 0), chair(4, 3, 0), chair(7, 0, 1.5)};
+  map.objects[2].last_seen_s = 9.0;
   for (unsigned i = 0; i < 5; ++i)
     map.trajectory.push_back({i, i * 2.0, level_pose({i * 1.0, 0, 1}, 0.1), level_pose({i * 1.1, 0, 1}, 0.0)});
+  map.rooms = {{3, {{2, -1}, {10, -1}, {10, 8}, {2, 8}}, 72.0, 2.5, true, {1}, {}}};
   map.T_map_odom = level_pose({1, 2, 0}, 0.0);
   return map;
 }
@@ -91,7 +94,7 @@ TEST(QueryObjects, ByTypeAndFunction) {
   EXPECT_EQ(ids(query_objects(sample_map(), {{"type", "chair"}})), (Ids{4, 7}));
   EXPECT_EQ(ids(query_objects(sample_map(), {{"type", "chair,wall"}})), (Ids{1, 4, 7}));
   EXPECT_EQ(ids(query_objects(sample_map(), {{"function", "place"}})), (Ids{2}));
-  EXPECT_EQ(ids(query_objects(sample_map(), {{"function", "fly"}})), (Ids{}));
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"function", "place,sit"}})), (Ids{2, 4, 7}));
   EXPECT_EQ(ids(query_objects(sample_map(), {{"type", "table"}, {"function", "sit"}})), (Ids{}));
 }
 
@@ -102,6 +105,43 @@ TEST(QueryObjects, NearSortsByTheDistanceToTheOutline) {
   EXPECT_NEAR(value_of(answer)["objects"][0]["distance"].get<double>(), 0.4, 1e-6);
   EXPECT_NEAR(value_of(answer)["objects"][3]["distance"].get<double>(), 8.6, 1e-6);
   EXPECT_EQ(ids(query_objects(sample_map(), {{"near", "1.4,0"}, {"within", "1.7"}})), (Ids{2, 4}));
+}
+
+TEST(QueryObjects, NearInSpaceCountsTheHeightToo) {
+  // 2 m over the table's middle; the wall is 10 m away, and reaches up to 2.5 m.
+  const auto answer = query_objects(sample_map(), {{"near", "0,0,2.74"}, {"type", "table,wall"}});
+  EXPECT_EQ(ids(answer), (Ids{2, 1}));
+  EXPECT_NEAR(value_of(answer)["objects"][0]["distance"].get<double>(), 2.0, 1e-6);
+  EXPECT_NEAR(value_of(answer)["objects"][1]["distance"].get<double>(), std::hypot(10.0, 0.24), 1e-6);
+}
+
+TEST(QueryObjects, SortsByWhatIsAskedFor) {
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"sort", "-id"}})), (Ids{7, 4, 2, 1}));
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"sort", "-size"}, {"limit", "1"}})), (Ids{1}));
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"sort", "last_seen"}})), (Ids{1, 2, 7, 4}));
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"near", "0,0"}, {"sort", "-distance"}})), (Ids{1, 4, 7, 2}));
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"near", "0,0"}, {"sort", "id"}})), (Ids{1, 2, 4, 7}));
+}
+
+TEST(QueryRooms, HaveTheirObjects) {
+  EXPECT_EQ(ids(query_objects(sample_map(), {{"room", "3"}})), (Ids{1, 4}));
+  const auto rooms = value_of(query_rooms(sample_map()));
+  EXPECT_EQ(rooms["revision"], 5);
+  EXPECT_EQ(rooms["rooms"][0]["objects"], (Json{1, 4}));
+  EXPECT_EQ(value_of(query_room(sample_map(), "3")), rooms["rooms"][0]);
+  EXPECT_EQ(error_of(query_room(sample_map(), "4")).message, "no room 4; ids run 3–3");
+  EXPECT_EQ(error_of(query_room(sample_map(), "x")).parameter, "id");
+  EXPECT_EQ(error_of(query_room(MapSnapshot{}, "4")).message, "no room 4; the map has no rooms yet");
+}
+
+TEST(QueryRooms, AScreenBelongsToTheRoomThatItFaces) {
+  auto map = sample_map();
+  MapObject screen = wall(9, 10.02, 1, 2);
+  screen.type = ObjectType::Screen;
+  screen.plane = PlaneEquation{{-1, 0, 0}, -10.02};
+  EXPECT_TRUE(is_in_room(screen, map.rooms[0]));
+  screen.plane = PlaneEquation{{1, 0, 0}, 10.02};
+  EXPECT_FALSE(is_in_room(screen, map.rooms[0]));
 }
 
 TEST(QueryObjects, LimitCutsButSaysHowManyMatched) {
@@ -115,14 +155,22 @@ TEST(QueryObjects, RefusesWhatItDoesNotUnderstand) {
     const auto error = error_of(query_objects(sample_map(), params));
     return std::to_string(error.status) + " " + error.code + " " + error.message;
   };
-  EXPECT_THAT(message({{"type", "wal"}}),
-              HasSubstr("400 bad_parameter type must be one or several of wall, table, screen, chair, not \"wal\""));
+  EXPECT_THAT(
+      message({{"type", "wal"}}),
+      HasSubstr(
+          "400 bad_parameter type must be one or several, with commas, of wall, table, screen, chair, not \"wal\""));
+  EXPECT_THAT(message({{"function", "fly"}}), HasSubstr("of sit, place, view, bound, not \"fly\""));
   EXPECT_THAT(message({{"type", "wall,"}}), HasSubstr("not \"\""));
   for (const char* near : {"1", "1,2,3,4", "nan,0", "1,,2", ""})
     EXPECT_THAT(message({{"near", near}}), HasSubstr("near must be two or three numbers"));
   EXPECT_THAT(message({{"within", "2"}}), HasSubstr("within must be used with near"));
   EXPECT_THAT(message({{"near", "0,0"}, {"within", "-1"}}), HasSubstr("within must be a number"));
   EXPECT_THAT(message({{"near", "0,0"}, {"within", "inf"}}), HasSubstr("within must be a number"));
+  EXPECT_THAT(message({{"room", "9"}}), HasSubstr("room must be one of 3, not \"9\""));
+  EXPECT_THAT(message({{"room", "x"}}), HasSubstr("room must be a whole number"));
+  EXPECT_THAT(message({{"sort", "colour"}}), HasSubstr("sort must be one of id, distance, size"));
+  EXPECT_THAT(message({{"sort", "--id"}}), HasSubstr("sort must be one of"));
+  EXPECT_THAT(message({{"sort", "distance"}}), HasSubstr("something else without near"));
   EXPECT_THAT(message({{"limit", "0"}}), HasSubstr("limit must be a whole number from 1"));
   EXPECT_THAT(message({{"limit", "2.5"}}), HasSubstr("limit must be a whole number"));
   EXPECT_THAT(message({{"limit", std::string(500, '9')}}), HasSubstr("…\""));
@@ -159,6 +207,8 @@ TEST(QueryTrajectory, SinceAndUntilAreInclusive) {
   EXPECT_EQ(times({}), (std::vector<double>{0, 2, 4, 6, 8}));
   EXPECT_EQ(times({{"since", "2"}, {"until", "6"}}), (std::vector<double>{2, 4, 6}));
   EXPECT_EQ(times({{"since", "8.5"}}), std::vector<double>{});
+  EXPECT_EQ(times({{"every", "3"}}), (std::vector<double>{0, 4, 8}));
+  EXPECT_EQ(times({{"since", "1"}, {"every", "2"}}), (std::vector<double>{2, 4, 6, 8}));
   const auto first = value_of(query_trajectory(sample_map(), {{"since", "4"}}))["poses"][0];
   EXPECT_NEAR(first["odometry"]["position"][0].get<double>(), 2.2, 1e-9);
   EXPECT_EQ(first["position"], (Json{2.0, 0.0, 1.0}));  // T_map_pelvis, not odometry

@@ -95,6 +95,7 @@ TEST_F(ServerTest, EveryRouteAnswers) {
   EXPECT_THAT(page.header("Content-Type"), HasSubstr("text/html"));
   EXPECT_THAT(page.body, HasSubstr("api/v1/map"));
   EXPECT_EQ(client.get("/api/v1/map").header("Content-Type"), "application/json");
+  EXPECT_EQ(client.get("/api/v1/rooms").json()["rooms"], Json::array());
   const auto file = client.get("/api/v1/export/scene.glb");
   EXPECT_EQ(file.body.substr(0, 4), "glTF");
   EXPECT_EQ(file.header("Content-Type"), "model/gltf-binary");
@@ -145,8 +146,36 @@ TEST_F(ServerTest, ErrorsAreJsonWithTheRightStatus) {
   expect("GET", "/api/v1/pose", 503, "no_suit");
   expect("GET", "/api/v1/stream", 426, "upgrade_required");
   expect("GET", "/" + std::string(3000, 'a'), 414, "target_too_long");
+  expect("POST", "/api/v1/mop", 404, "not_found");
   EXPECT_EQ(expect("DELETE", "/api/v1/map", 405, "method_not_allowed").header("Allow"), "GET, HEAD");
   EXPECT_GE(status()["clients"]["errors"], 13);
+}
+
+TEST_F(ServerTest, WhatAClientHasIsNotSentAgain) {
+  start();
+  set_map(1, 100);
+  HttpClient client(port_);
+  const auto plain = client.get("/api/v1/map");
+  const std::string tag = plain.header("ETag");
+  EXPECT_EQ(plain.header("Vary"), "Accept-Encoding");
+  EXPECT_EQ(plain.header("Cache-Control"), "no-cache");
+  const auto ask = [&](std::vector<std::pair<std::string, std::string>> headers) {
+    return client.request("GET", "/api/v1/map", headers);
+  };
+  const auto again = ask({{"If-None-Match", "\"other\", " + tag}});
+  EXPECT_EQ(again.status, 304);
+  EXPECT_EQ(again.body, "");
+  EXPECT_EQ(again.header("ETag"), tag);
+  const auto packed = ask({{"Accept-Encoding", "br, gzip"}, {"If-None-Match", tag}});
+  EXPECT_EQ(packed.status, 200) << "other bytes, another strong tag";
+  EXPECT_EQ(packed.header("Content-Encoding"), "gzip");
+  EXPECT_LT(packed.body.size(), plain.body.size() / 4);
+  EXPECT_EQ(ask({{"Accept-Encoding", "gzip"}, {"If-None-Match", packed.header("ETag")}}).status, 304);
+  const auto head = client.request("HEAD", "/api/v1/map", {{"Accept-Encoding", "gzip"}});
+  EXPECT_EQ(head.header("Content-Length"), std::to_string(packed.body.size()));
+  set_map(2, 100);
+  EXPECT_EQ(ask({{"If-None-Match", tag}}).status, 200);
+  EXPECT_EQ(client.get("/api/v1/nothing").header("ETag"), "");
 }
 
 TEST_F(ServerTest, RequestsBeyondTheLimitsAreRefusedAndClosed) {

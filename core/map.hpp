@@ -130,6 +130,8 @@ struct MapSnapshot {
   std::vector<TrajectoryPose> trajectory;
   std::vector<UnresolvedTrace> unresolved;
   Pose T_map_odom;                   ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
+  /// Of the newest key pose: position (m) and rotation vector (rad) about the pelvis, both in the map's axes.
+  std::optional<Eigen::Matrix<double, 6, 6>> pelvis_covariance;
   std::optional<TouchingHand> hand;  ///< absent until something was touched
   GraphSummary graph;
 };

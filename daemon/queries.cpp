@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +19,20 @@ using Json = nlohmann::ordered_json;
 
 ApiError no_suit() {
   return {503, "no_suit", "no frame of a suit has come yet; /api/v1/status says what was received"};
+}
+
+/// Variances span many powers of ten: five digits each, not a fixed number of decimals.
+Json covariance_json(const Eigen::Matrix<double, 6, 6>& covariance) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    Json& row = rows.emplace_back(Json::array());
+    for (Eigen::Index j = 0; j < 6; ++j) {
+      char digits[32];
+      std::snprintf(digits, sizeof digits, "%.4e", covariance(i, j));
+      row.push_back(std::strtod(digits, nullptr) + 0.0);
+    }
+  }
+  return rows;
 }
 
 Json head_of(const MapSnapshot& map, const LiveBody& body, double now_s) {
@@ -60,6 +76,7 @@ Answer query_pose(const MapSnapshot& map, const LiveBody& body, double now_s) {
   Json json = head_of(map, body, now_s);
   json.update(to_json(map.T_map_odom * T_odom_pelvis));
   json["odometry"] = to_json(T_odom_pelvis);
+  if (map.pelvis_covariance) json["covariance"] = covariance_json(*map.pelvis_covariance);
   return compact_text(json);
 }
 

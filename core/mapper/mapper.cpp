@@ -6,6 +6,7 @@
 #include "core/mapper/closure.hpp"
 #include "core/mapper/observe.hpp"
 #include "core/mapper/odometry.hpp"
+#include "core/mapper/pose_covariance.hpp"
 #include "core/mapper/publish.hpp"
 #include "core/mapper/resolve.hpp"
 #include "core/mapper/rooms.hpp"
@@ -17,7 +18,12 @@ namespace kinemap {
 class Mapper::Impl {
  public:
   Impl(const MapperConfig& config, std::uint64_t revision)
-      : config_(config), odometry_(config.odometry), resolver_(config.landmarks), closer_(config), touch_(config.hand) {
+      : config_(config),
+        odometry_(config.odometry),
+        resolver_(config.landmarks),
+        closer_(config),
+        touch_(config.hand),
+        pelvis_covariance_(config.odometry) {
     state_.graph.touch_points.push_back(touch_.prior());
     auto empty = std::make_shared<MapSnapshot>();
     empty->revision = revision;
@@ -28,6 +34,8 @@ class Mapper::Impl {
 
   bool add(const KeyPose& key_pose) {
     odometry_.add(key_pose, state_.graph);
+    if (const auto& way = state_.graph.between; !way.empty())
+      pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back());
     time_s_ = key_pose.time_s;
     if (odometry_.key_poses().size() < snapshot_->trajectory.size() + kTrajectoryLag) return false;
     publish(std::make_shared<MapSnapshot>(*snapshot_));  // the objects are as they were
@@ -123,6 +131,8 @@ class Mapper::Impl {
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);
     map->unresolved = unresolved_;
+    if (marginals && !state_.graph.poses.empty())
+      pelvis_covariance_.set(state_.graph.poses.back(), newest_marginal(state_.graph, *marginals));
     if (marginals && touched_)
       map->hand =
           describe_hand(touch_, state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
@@ -140,6 +150,8 @@ class Mapper::Impl {
       map->trajectory.push_back({key_pose.id, key_pose.time_s, state_.graph.poses[key_pose.id], key_pose.T_odom_pelvis,
                                  step_sigma(state_.graph, key_pose.id)});
     if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();
+    if (!key_poses.empty())
+      map->pelvis_covariance = pelvis_covariance_.published(state_.graph.poses.back(), state_.graph.poses.front().p);
     map->graph = state_.summary;
     map->graph.key_poses = key_poses.size();
     map->graph.landmarks = map->objects.size();
@@ -152,6 +164,7 @@ class Mapper::Impl {
   TraceResolver resolver_;
   LoopCloser closer_;
   TouchBelief touch_;
+  PoseCovariance pelvis_covariance_;
   bool touched_ = false;  ///< a trace or pivot gesture has been seen
   MapState state_;
   std::vector<UnresolvedTrace> unresolved_;

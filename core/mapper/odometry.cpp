@@ -120,11 +120,16 @@ StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to) {
   return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), 1.0 / information(5, 5)};
 }
 
-graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config) {
+graph::Matrix6 typical_noise(const graph::Matrix6& sqrt_information, const MapperConfig::Odometry& config) {
   constexpr double kUnknown = 1.0;  // 1/rad: a restart's heading stays unknown
+  graph::Matrix6 out = sqrt_information;
+  if (out(5, 5) > kUnknown) out.row(5) /= config.typical_heading_share;
+  return out;
+}
+
+graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config) {
   graph::Graph out = graph;
-  for (auto& between : out.between)
-    if (between.sqrt_information(5, 5) > kUnknown) between.sqrt_information.row(5) /= config.typical_heading_share;
+  for (auto& between : out.between) between.sqrt_information = typical_noise(between.sqrt_information, config);
   return out;
 }
 

@@ -51,6 +51,9 @@ graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to,
 /// The noise of the odometry that leads to pose `to`, as the graph has it; all 0 for the first pose.
 StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to);
 
+/// The noise of one step with the heading as errors usually show it.
+graph::Matrix6 typical_noise(const graph::Matrix6& sqrt_information, const MapperConfig::Odometry& config);
+
 /// The graph with the heading noise that errors usually show, for the covariances that are published.
 graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config);
 

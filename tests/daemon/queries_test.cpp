@@ -219,6 +219,12 @@ TEST(QueryPose, IsTheOdometryCorrectedByTheMap) {
   EXPECT_EQ(error_of(query_pose(sample_map(), {}, 0.0)).status, 503U);
   const auto json = value_of(query_pose(sample_map(), test::body_at(3.5, {0.5, 0.25, 1.0}), 0.75));
   EXPECT_EQ(json["age"], 0.75);
+  EXPECT_FALSE(json.contains("covariance"));
+  auto map = sample_map();
+  map.pelvis_covariance.emplace(Eigen::Matrix<double, 6, 6>::Identity() * 1.23456e-8);
+  const auto covariance = value_of(query_pose(map, test::body_at(3.5, {0, 0, 1}), 0.0))["covariance"];
+  ASSERT_EQ(covariance.size(), 6U);
+  EXPECT_EQ(covariance[5], (Json{0.0, 0.0, 0.0, 0.0, 0.0, 1.2346e-8}));
   EXPECT_EQ(json["position"], (Json{1.5, 2.25, 1.0}));
   EXPECT_EQ(json["odometry"]["position"], (Json{0.5, 0.25, 1.0}));
   EXPECT_EQ(json["time"], 3.5);

@@ -7,6 +7,7 @@ namespace kinemap::bench {
 
 void add_accuracy(CLI::App& app, cli::Run& run);
 void add_pipeline(CLI::App& app, cli::Run& run);
+void add_server(CLI::App& app, cli::Run& run);
 void add_tracker(CLI::App& app, cli::Run& run);
 
 }  // namespace kinemap::bench

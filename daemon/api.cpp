@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/export_routes.hpp"
+#include "daemon/openapi.hpp"
 #include "daemon/page.hpp"
 #include "daemon/queries.hpp"
 
@@ -50,7 +51,7 @@ void Api::add_routes() {
       [this](const Call& call) { return reply_of(query_object(*sources_.map(), call.id)); });
   add("/api/v1/rooms", "Every room, with the objects in it.", {}, "rooms",
       [this](const Call&) { return reply_of(query_rooms(*sources_.map())); });
-  add("/api/v1/rooms/{id}", "One room.", {}, "room",
+  add("/api/v1/rooms/{id}", "One room.", {}, "room_with_objects",
       [this](const Call& call) { return reply_of(query_room(*sources_.map(), call.id)); });
   add("/api/v1/trajectory", "The optimised key poses of the pelvis.", trajectory_params(), "trajectory",
       [this](const Call& call) { return reply_of(query_trajectory(*sources_.map(), call.params)); });
@@ -62,6 +63,10 @@ void Api::add_routes() {
       [this](const Call& call) { return reply_of(query_events(events_, call.params)); });
   add("/api/v1/status", "What was received, detected, mapped and dropped.", {}, "status",
       [this](const Call&) { return reply_of(status_text()); });
+  add("/api/v1/openapi.json", "This API as OpenAPI 3.1.", {}, "openapi", [this](const Call&) {
+    if (!openapi_) openapi_ = std::make_shared<const std::string>(openapi_text(routes_, KINEMAP_VERSION));
+    return Reply{.body = openapi_};
+  });
   add("/api/v1/stream", "The WebSocket: revisions, poses and events as they come.", {}, "error", [](const Call&) {
     return error_reply({426, "upgrade_required", "/api/v1/stream speaks WebSocket"});
   });

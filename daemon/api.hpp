@@ -55,6 +55,7 @@ class Api {
   MapHistory history_;
   LiveEvents events_;
   GzipCache gzip_;
+  SharedText openapi_;  // once somebody asked
   std::chrono::steady_clock::time_point look_due_{};
 };
 

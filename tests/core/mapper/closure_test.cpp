@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/mapper/closure.hpp"
+
+#include <gtest/gtest.h>
+
+namespace kinemap {
+namespace {
+
+/// A seat 1 m before each of the poses, which stand on a line `apart` metres from each other (known to 1 cm), and all
+/// of which were taken for one visit each to the same seat.
+MapState seats_taken_for_one(const std::vector<double>& apart) {
+  MapState state;
+  graph::Landmark seat;
+  seat.kind = graph::LandmarkKind::Seat;
+  seat.x = {1.0, 0.0, 0.45, 0.0, 0.0, 0.0, 0.0};
+  state.graph.landmarks = {seat};
+  state.landmarks = {{1, 0, 0.0, 0.0, 0.0}};
+  for (std::size_t k = 0; k <= apart.size(); ++k) {
+    const double way = k == 0 ? 0.0 : apart[k - 1];
+    const Pose T_step = level_pose({way, 0.0, 0.0}, 0.0);
+    state.graph.poses.push_back(k == 0 ? Pose{} : state.graph.poses.back() * T_step);
+    if (k == 0)
+      state.graph.priors.push_back({0, {}, graph::Matrix6::Identity() * 1e3});
+    else
+      state.graph.between.push_back({k - 1, k, T_step, graph::Matrix6::Identity() * 1e2, {}});
+    graph::SeatFactor factor;
+    factor.i = k;
+    factor.T_i_seat = level_pose({1.0, 0.0, 0.45}, 0.0);
+    factor.sigma_level_m = 0.06, factor.sigma_z_m = 0.03, factor.sigma_heading_rad = 0.15;
+    factor.loss = {graph::Loss::Kind::Cauchy, 2.0};
+    state.graph.seats.push_back(factor);
+    const double time = 10.0 * static_cast<double>(k);
+    state.observations.push_back({0, static_cast<KeyPoseId>(k), 0, 0, k, time, time + 5.0});
+    state.landmarks[0].last_seen_s = time + 5.0;
+    ++state.landmarks[0].observations;
+  }
+  return state;
+}
+
+TEST(Split, TheVisitTakesItsFactorsAndTimesWithIt) {
+  MapState state = seats_taken_for_one({0.0, 0.0});
+  const std::size_t alone = split(state, 2);
+  ASSERT_EQ(alone, 1U);
+  EXPECT_EQ(state.graph.landmarks[1].x, state.graph.landmarks[0].x);
+  EXPECT_EQ(state.graph.seats[2].landmark, 1U);
+  EXPECT_EQ(state.graph.seats[1].landmark, 0U);
+  EXPECT_EQ(state.observations[2].landmark, 1U);
+  EXPECT_EQ(state.landmarks[0].observations, 2);
+  EXPECT_EQ(state.landmarks[0].last_seen_s, 15.0);
+  EXPECT_EQ(state.landmarks[1].observations, 1);
+  EXPECT_EQ(state.landmarks[1].first_seen_s, 20.0);
+  EXPECT_EQ(state.landmarks[1].id, 0U);  // no object until somebody accepts it
+}
+
+TEST(Split, AMergeUndoesIt) {
+  MapState state = seats_taken_for_one({0.0});
+  const std::size_t alone = split(state, 1);
+  merge(state, alone, {0, 0, 0.0, 4, 0.0});
+  EXPECT_FALSE(state.graph.landmarks[alone].active);
+  EXPECT_EQ(state.graph.seats[1].landmark, 0U);
+  EXPECT_EQ(state.landmarks[0].observations, 2);
+  EXPECT_EQ(state.landmarks[0].last_seen_s, 15.0);
+}
+
+TEST(Revise, TakesBackTheVisitThatTheWayContradicts) {
+  MapState state = seats_taken_for_one({0.0, 5.0});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_TRUE(closer.revise(state));
+  EXPECT_EQ(state.summary.loop_closures_revoked, 1U);
+  ASSERT_EQ(state.graph.landmarks.size(), 2U);
+  EXPECT_EQ(state.observations[1].landmark, 0U);
+  EXPECT_EQ(state.observations[2].landmark, 1U);
+  EXPECT_NE(state.landmarks[1].id, 0U);
+  EXPECT_NEAR(state.graph.landmarks[0].x[0], 1.0, 0.01);
+  EXPECT_NEAR(state.graph.landmarks[1].x[0], 6.0, 0.01);
+  EXPECT_FALSE(closer.revise(state));  // nothing more to take back
+}
+
+TEST(Revise, LeavesAVisitThatOnlyDriftKeepsApart) {
+  MapState state = seats_taken_for_one({0.05, -0.08});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_FALSE(closer.revise(state));
+  EXPECT_EQ(state.graph.landmarks.size(), 1U);
+}
+
+}  // namespace
+}  // namespace kinemap

@@ -59,6 +59,7 @@ void add_export_routes(Routes& routes, const Sources& sources) {
   for (const Export& file : exports())
     routes.add({.path = std::string(kPath) + '/' + file.name,
                 .summary = std::string(file.description) + '.',
+                .schema = std::string_view(file.content_type) == "application/json" ? "map" : "",
                 .content_type = file.content_type,
                 .answer = [files, &file](const Call&) { return files->reply(file); }});
 }

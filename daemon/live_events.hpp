@@ -18,7 +18,7 @@ namespace kinemap {
 /// Something happened, for those who listen.
 struct LiveEvent {
   std::uint64_t number = 0;  ///< counts from 1
-  std::string kind;          ///< "gesture_began", "trace", "sitting", "object_found", …: daemon/README.md has all
+  std::string kind;          ///< "gesture_began", "trace", "sitting", "object_found", …: protocol/README.md has all
   double time_s = 0.0;       ///< stream time
   std::string message;       ///< for people
   SharedText data;           ///< JSON of the whole event

@@ -10,7 +10,7 @@
 #include "daemon/pipeline.hpp"
 #include "daemon/routes.hpp"
 
-/// The questions that HTTP and WebSocket clients ask, as pure functions over a snapshot. daemon/README.md is the
+/// The questions that HTTP and WebSocket clients ask, as pure functions over a snapshot. protocol/README.md is the
 /// specification.
 namespace kinemap {
 

@@ -38,7 +38,7 @@ struct Status {
 /// Frames came within the last 2 s.
 bool is_receiving(const ReceiverState& suit);
 
-/// JSON of /api/v1/status; daemon/README.md explains each field.
+/// JSON of /api/v1/status; protocol/README.md explains each field.
 std::string status_text(const Status& status);
 
 /// JSON of /healthz: {"status": "ok" | "waiting" | "refused", "message": …}. "ok": frames came within the last 2 s.

@@ -13,7 +13,7 @@
 #include "daemon/outbox.hpp"
 #include "daemon/url.hpp"
 
-/// The JSON messages of /api/v1/stream, both ways; daemon/README.md is the specification.
+/// The JSON messages of /api/v1/stream, both ways; protocol/README.md is the specification.
 namespace kinemap {
 
 struct Subscribe {

@@ -103,7 +103,7 @@ Json messages_of(std::uint16_t port, World& world) {
   client.send(R"({"op":"query","id":"a","path":"nothing"})");
   client.send("nonsense");
   while (topics.size() < 8) {
-    messages.push_back(client.receive());
+    messages.push_back(Json(client.receive()));
     const Json& message = messages.back();
     if (message.contains("closed")) break;
     topics.insert(message.value("op", "") + message.value("topic", ""));
@@ -112,7 +112,7 @@ Json messages_of(std::uint16_t port, World& world) {
   ++next.revision;
   next.objects.pop_back();
   world.map.set(std::make_shared<const MapSnapshot>(next));
-  messages.push_back(client.receive({{"topic", "map"}}));
+  messages.push_back(Json(client.receive({{"topic", "map"}})));
   EXPECT_TRUE(messages.back()["data"].contains("since"));
   return messages;
 }

@@ -13,12 +13,12 @@
 #include "daemon/server.hpp"
 #include "protocol/json_text.hpp"
 #include "protocol/recording.hpp"
+#include "protocol/text_format.hpp"
 #include "tools/bench/commands.hpp"
 #include "tools/bench/scenario.hpp"
 #include "tools/bench/server_clients.hpp"
 #include "tools/bench/temporary_directory.hpp"
 #include "tools/kinemap/client.hpp"
-#include "tools/kinemap/text_table.hpp"
 
 namespace kinemap::bench {
 namespace {
@@ -246,9 +246,9 @@ nlohmann::ordered_json ranks(std::vector<double>& values) {
 }
 
 std::string row(const std::string& name, const nlohmann::ordered_json& r) {
-  return cli::format("| %s | %llu | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(),
-                     r.at("count").get<unsigned long long>(), r.at("50").get<double>(), r.at("99").get<double>(),
-                     r.at("99.9").get<double>(), r.at("100").get<double>());
+  return format("| %s | %llu | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), r.at("count").get<unsigned long long>(),
+                r.at("50").get<double>(), r.at("99").get<double>(), r.at("99.9").get<double>(),
+                r.at("100").get<double>());
 }
 
 int server(const Options& options) {
@@ -266,7 +266,7 @@ int server(const Options& options) {
 
   nlohmann::ordered_json json = {
       {"scenario", scenario->name}, {"clients", figures->clients.connected}, {"lost", figures->clients.lost}};
-  std::string text = cli::format(
+  std::string text = format(
       "%s; %d clients for %.0f s, %d of which never read, 10 poses and %g revisions a second\n\n"
       "| | count | p50 | p99 | p99.9 | most |\n|---|---|---|---|---|---|\n",
       scenario->name.c_str(), figures->clients.connected, options.seconds, options.sleepers, options.revisions_hz);
@@ -275,13 +275,13 @@ int server(const Options& options) {
   text += row("step of the tracker, idle server, µs", json["step_us"]["idle"] = ranks(figures->idle_us));
   text += row("step of the tracker, with clients, µs", json["step_us"]["busy"] = ranks(figures->busy_us));
   for (auto& [question, values] : *questions)
-    text += row(cli::format("objects?%s of %d, ms", question.c_str(), options.objects),
+    text += row(format("objects?%s of %d, ms", question.c_str(), options.objects),
                 json["objects_ms"][question] = ranks(values));
   const double ratio = json["step_us"]["busy"]["99.9"].get<double>() / json["step_us"]["idle"]["99.9"].get<double>();
   json["step_ratio_p99.9"] = ratio;
   json["memory_mb"] = {{"before", figures->before_mb}, {"most", figures->most_mb}};
   json["status"] = figures->status;
-  text += cli::format(
+  text += format(
       "\np99.9 of the tracker's step, with clients to idle: %.2f\nmemory: %.1f MB before, at most %.1f MB with "
       "clients\nclients: %s\n",
       ratio, figures->before_mb, figures->most_mb, figures->status.dump().c_str());

@@ -12,7 +12,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/kinemap/text_table.hpp"
+#include "protocol/text_format.hpp"
 
 namespace kinemap::bench {
 namespace {
@@ -44,7 +44,7 @@ class Client : public std::enable_shared_from_this<Client> {
     if (!error) stream_.handshake("localhost:" + std::to_string(plan_.port), "/api/v1/stream", error);
     if (error) return false;
     stream_.read_message_max(0);
-    stream_.write(net::buffer(cli::format(R"({"op":"subscribe","topics":["map","pose"],"rate_hz":%g})", plan_.rate_hz)),
+    stream_.write(net::buffer(format(R"({"op":"subscribe","topics":["map","pose"],"rate_hz":%g})", plan_.rate_hz)),
                   error);
     return !error;
   }
@@ -105,8 +105,8 @@ ClientsReport run_clients(const ClientsPlan& plan) {
 Result<ClientsReport> run_clients_apart(const ClientsPlan& plan) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command =
-      cli::format("'%s' server-clients --port %u --readers %d --sleepers %d --rate %.17g --seconds %.17g --epoch %.17g",
-                  program.c_str(), plan.port, plan.readers, plan.sleepers, plan.rate_hz, plan.seconds, plan.epoch_s);
+      format("'%s' server-clients --port %u --readers %d --sleepers %d --rate %.17g --seconds %.17g --epoch %.17g",
+             program.c_str(), plan.port, plan.readers, plan.sleepers, plan.rate_hz, plan.seconds, plan.epoch_s);
   FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return Error{"cannot start " + command};
   std::string text;

@@ -166,6 +166,8 @@ std::unique_ptr<Server> open_server(Sources sources) {
   return started.index() == 0 ? std::get<0>(std::move(started)) : nullptr;
 }
 
+cli::DaemonAddress address_of(const Server& server) { return {{"127.0.0.1", server.port()}, "", ""}; }
+
 /// Half of the idle time before the clients come and half after, so that a drift of the machine does not count.
 Result<Figures> measure(const Session& session, const Options& options) {
   Figures figures;
@@ -195,7 +197,7 @@ Result<Figures> measure(const Session& session, const Options& options) {
     figures.clients = std::move(*clients);
     figures.most_mb = memory.most_mb();
   }
-  const auto status = cli::http_get({"127.0.0.1", server->port()}, "/api/v1/status");
+  const auto status = cli::http_get(address_of(*server), "/api/v1/status");
   if (!status) return Error{status.error()};
   figures.status = nlohmann::json::parse(*status).at("clients");
   rest();
@@ -231,7 +233,7 @@ Result<std::map<std::string, std::vector<double>>> ask_large_map(const Session& 
   for (const char* question : {"near=55,25&limit=10", "near=55,25&within=5", "near=55,25"})
     for (int i = 0; i < (std::string(question) == "near=55,25" ? 20 : 200); ++i) {
       const auto from = Clock::now();
-      const auto answer = cli::http_get({"127.0.0.1", server->port()}, std::string("/api/v1/objects?") + question);
+      const auto answer = cli::http_get(address_of(*server), std::string("/api/v1/objects?") + question);
       if (!answer) return Error{answer.error()};
       times_ms[question].push_back(seconds_of(Clock::now() - from) * 1e3);
     }

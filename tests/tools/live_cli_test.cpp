@@ -81,6 +81,8 @@ TEST(LiveCli, StatusMapAndWatchFollowAWearer) {
   EXPECT_GT(status["tracker"]["frames"], 1000);
   EXPECT_NE(kinemap({"status", "--url", api}).out.find("port       " + std::to_string(suit)), std::string::npos)
       << "a port is no count";
+  EXPECT_EQ(kinemap({"status", "--url", api}).out.substr(0, 8 + api.size()), "http://" + api + ":")
+      << "how it is, in a line";
   const Ran map = kinemap({"map", "--url", api, "--svg", (root / "plan.svg").string()});
   EXPECT_NE(map.out.find("chair"), std::string::npos) << map.out;
   EXPECT_NE(slurp((root / "plan.svg").string()).find("class=\"path\""), std::string::npos)

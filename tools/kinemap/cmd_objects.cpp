@@ -50,7 +50,8 @@ int ask(const Options& options) {
   const auto answer = nlohmann::ordered_json::parse(*text);
   if (options.json) return print("objects", pretty_text(answer));
   std::string output = object_table(*objects, distances_of(answer));
-  const std::size_t matched = answer.value("matched", objects->size());
+  const bool told = answer.contains("matched") && answer["matched"].is_number_unsigned();
+  const std::size_t matched = told ? answer["matched"].get<std::size_t>() : objects->size();
   if (objects->size() < matched)
     output += format("%zu of %zu that match\n", objects->size(), matched);
   else

@@ -46,6 +46,17 @@ void append(const Json& group, const std::string& indent, std::string& text) {
   }
 }
 
+/// ": ok: frames come at 120 Hz", in the daemon's words; empty when it gives none.
+std::string health_text(const DaemonAddress& daemon) {
+  const auto body = http_get(daemon, "/healthz");
+  const Json health = body ? Json::parse(*body, nullptr, false) : Json();
+  std::string text;
+  for (const char* key : {"status", "message"})
+    if (health.is_object() && health.contains(key) && health[key].is_string())
+      text += ": " + health[key].get<std::string>();
+  return text;
+}
+
 int status(const Options& options) {
   const auto daemon = daemon_of(options.daemon);
   if (!daemon) return fail("status", daemon.error(), kUsage);
@@ -54,7 +65,7 @@ int status(const Options& options) {
   const Json json = Json::parse(*body, nullptr, false);
   if (!json.is_object()) return fail("status", daemon->text() + ": the answer is not a JSON object; is this kinemapd?");
   if (options.json) return print("status", pretty_text(json));
-  std::string text;
+  std::string text = daemon->text() + health_text(*daemon) + "\n\n";
   append(json, "", text);
   return print("status", text);
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace kinemap {
@@ -35,7 +37,12 @@ struct Reply {
   std::string download = {};  ///< the file's name where it is to be saved; empty: to be shown
   bool immutable = false;     ///< never changes below this path (files named by their content): caches keep it
   std::string allow = {};     ///< with 405: the methods there are
+  /// When set, there is no body yet: this makes the reply. It takes long, and may be called on any thread.
+  std::function<Reply()> later = {};
 };
+
+/// The reply itself, made here when it has to be.
+inline Reply made(Reply reply) { return reply.later ? reply.later() : std::move(reply); }
 
 Reply reply_of(Answer answer);
 Reply error_reply(const ApiError& error);

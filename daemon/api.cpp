@@ -95,12 +95,15 @@ Reply Api::query(std::string_view path, const Params& params) {
   Reply reply = routes_.answer("/api/v1/" + std::string(path), params);
   if (reply.status < 400 && reply.content_type != "application/json")
     return error_reply({400, "not_json", "/api/v1/" + std::string(path) + " is a file; GET it over HTTP"});
-  return reply;
+  return made(std::move(reply));
 }
 
-HttpAnswer Api::http(const HttpRequest& request) {
+Reply Api::begin(const HttpRequest& request) {
   ++counts_.requests;
-  Reply reply = get(request);
+  return get(request);
+}
+
+HttpAnswer Api::finish(Reply reply, const HttpRequest& request) {
   if (reply.status >= 400) ++counts_.errors;
   return http_answer(std::move(reply), request, gzip_);
 }

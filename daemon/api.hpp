@@ -24,8 +24,11 @@ class Api {
   Api(const Api&) = delete;  // the routes refer to it
   Api& operator=(const Api&) = delete;
 
-  /// One HTTP request; HEAD is answered as GET (who sends it leaves out the body).
-  HttpAnswer http(const HttpRequest& request);
+  /// One HTTP request; HEAD is answered as GET (who sends it leaves out the body). In two steps, between which `made`
+  /// may be called on another thread when the reply says that it takes long.
+  Reply begin(const HttpRequest& request);
+  HttpAnswer finish(Reply reply, const HttpRequest& request);
+  HttpAnswer http(const HttpRequest& request) { return finish(made(begin(request)), request); }
   /// The answer to a request that is refused before its path is looked at.
   HttpAnswer refuse(const ApiError& error);
   /// The same questions by path, below /api/v1/ ("objects", "objects/7", "pose", …).

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/export_routes.hpp"
 
+#include <atomic>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,29 +14,54 @@ namespace {
 
 constexpr const char* kPath = "/api/v1/export";
 
-/// Files of the newest map, each made when it is first asked for and once for everyone who asks.
-class ExportFiles {
+/// One file of one map, made once for everyone who asks, by whoever comes first.
+class MapFile {
  public:
-  explicit ExportFiles(const Sources& sources) : sources_(sources) {}
+  MapFile(const Export& file, std::shared_ptr<const MapSnapshot> map) : file_(file), map_(std::move(map)) {}
+
+  [[nodiscard]] bool done() const { return done_; }
+  /// Any thread; makes the file when nobody has, or waits for who does.
+  Reply reply() {
+    std::call_once(once_, [this] {
+      auto bytes = export_map(file_, *map_);
+      reply_ = bytes ? Reply{.content_type = file_.content_type,
+                             .body = std::make_shared<const std::string>(*std::move(bytes)),
+                             .download = file_.name}
+                     : error_reply({503, "not_in_map", bytes.error()});
+      map_ = nullptr;
+      done_ = true;
+    });
+    return reply_;
+  }
+
+ private:
+  const Export& file_;
+  std::shared_ptr<const MapSnapshot> map_;
+  std::once_flag once_;
+  Reply reply_;
+  std::atomic<bool> done_ = false;
+};
+
+/// The files of the newest map that were asked for. The server's thread only.
+class MapFiles {
+ public:
+  explicit MapFiles(const Sources& sources) : sources_(sources) {}
 
   Reply reply(const Export& file) {
     if (auto map = sources_.map(); map != map_) {
       map_ = std::move(map);
-      bodies_.clear();
+      files_.clear();
     }
-    SharedText& body = bodies_[&file];
-    if (!body) {
-      auto bytes = export_map(file, *map_);
-      if (!bytes) return error_reply({503, "not_in_map", bytes.error()});
-      body = std::make_shared<const std::string>(*std::move(bytes));
-    }
-    return {.content_type = file.content_type, .body = body, .download = file.name};
+    auto& slot = files_[&file];
+    if (!slot) slot = std::make_shared<MapFile>(file, map_);
+    if (slot->done()) return slot->reply();
+    return {.content_type = file.content_type, .later = [slot] { return slot->reply(); }};
   }
 
  private:
   const Sources& sources_;
-  std::shared_ptr<const MapSnapshot> map_;  // what bodies_ are of
-  std::map<const Export*, SharedText> bodies_;
+  std::shared_ptr<const MapSnapshot> map_;  // what files_ are of
+  std::map<const Export*, std::shared_ptr<MapFile>> files_;
 };
 
 /// {"exports": [{"name", "path", "content_type", "description"}]}
@@ -55,7 +82,7 @@ void add_export_routes(Routes& routes, const Sources& sources) {
               .summary = "The files that the map can be had as.",
               .schema = "exports",
               .answer = [](const Call&) { return reply_of(list_text()); }});
-  const auto files = std::make_shared<ExportFiles>(sources);
+  const auto files = std::make_shared<MapFiles>(sources);
   for (const Export& file : exports())
     routes.add({.path = std::string(kPath) + '/' + file.name,
                 .summary = std::string(file.description) + '.',

@@ -57,8 +57,27 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return send(context_.api.refuse(*problem));
     }
     if (beast::websocket::is_upgrade(request)) return upgrade();
-    send(context_.api.http({view(request.method_string()), view(request.target()),
-                            view(request[http::field::if_none_match]), view(request[http::field::accept_encoding])}));
+    answer();
+  }
+
+  [[nodiscard]] HttpRequest request() const {
+    const auto& request = parser_->get();
+    return {view(request.method_string()), view(request.target()), view(request[http::field::if_none_match]),
+            view(request[http::field::accept_encoding])};
+  }
+
+  /// What takes long is made in the workshop, so that nobody else waits for it.
+  void answer() {
+    Reply reply = context_.api.begin(request());
+    if (!reply.later) return send(context_.api.finish(std::move(reply), request()));
+    net::post(context_.workshop, [self = shared_from_this(), reply = std::move(reply)]() mutable {
+      reply = made(std::move(reply));
+      const auto server = self->stream_.get_executor();
+      // With all that it holds: the session ends on the server's thread.
+      net::post(server, [self = std::move(self), reply = std::move(reply)]() mutable {
+        self->send(self->context_.api.finish(std::move(reply), self->request()));
+      });
+    });
   }
 
   /// What is wrong with a request before its path is looked at.

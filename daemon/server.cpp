@@ -28,9 +28,14 @@ class Server::Impl {
       : api_(std::move(sources), suit, suit_port),
         hub_(api_, config.pose_rate_hz),
         foxglove_(api_),
-        context_{
-            api_,         hub_, foxglove_, static_cast<std::size_t>(config.max_clients), config.client_buffer_bytes,
-            limits.stall, false} {}
+        context_{api_,
+                 hub_,
+                 foxglove_,
+                 workshop_,
+                 static_cast<std::size_t>(config.max_clients),
+                 config.client_buffer_bytes,
+                 limits.stall,
+                 false} {}
   ~Impl() { io_.stop(); }
 
   ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
@@ -113,6 +118,7 @@ class Server::Impl {
   foxglove::Feed foxglove_;
   WebContext context_;
   net::io_context io_{1};
+  net::thread_pool workshop_{1};  // after io_, to which it hands its work back
   net::ip::tcp::acceptor acceptor_{io_};
   net::steady_timer ticker_{io_}, pause_{io_};
   std::uint16_t port_ = 0;

@@ -25,6 +25,7 @@ struct WebContext {
   Api& api;
   StreamHub& hub;
   foxglove::Feed& foxglove;
+  net::thread_pool& workshop;  ///< one thread for what takes long
   std::size_t max_clients;
   std::size_t client_buffer_bytes;
   std::chrono::milliseconds stall;  ///< ServerLimits::stall

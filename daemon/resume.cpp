@@ -7,7 +7,7 @@ namespace kinemap {
 namespace {
 
 constexpr double kLongestS = 12 * 3600.0;
-constexpr double kClockS = 3.0;  // wall clock against counter: buffers, and a clock that is being set
+constexpr double kClockS = 30.0;  // wall clock against counter: buffers, a paused sender, a clock that is being set
 constexpr double kClockShare = 0.01;
 constexpr double kSpeed = 3.0;  // m/s that a person in a suit walks or runs at most, over minutes
 constexpr double kStep = 1.0;   // m

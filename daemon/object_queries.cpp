@@ -5,11 +5,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/mapper/polygon.hpp"
 #include "daemon/params.hpp"
 #include "daemon/queries.hpp"
 #include "protocol/json_text.hpp"
 #include "protocol/map_json.hpp"
+#include "protocol/rooms.hpp"
 
 namespace kinemap {
 namespace {
@@ -186,16 +186,6 @@ double distance(const MapObject& object, const Eigen::Vector3d& point) {
     if (length2 > 0.0) nearest += std::clamp((point - corner).dot(side) / length2, 0.0, 1.0) * side;
   }
   return (nearest - point).norm();
-}
-
-bool is_in_room(const MapObject& object, const Room& room) {
-  if (object.type == ObjectType::Wall)
-    return std::find(room.wall_ids.begin(), room.wall_ids.end(), object.id) != room.wall_ids.end();
-  // A screen hangs on the wall, on the room's very edge: what counts is where one stands before it.
-  constexpr double kBefore = 0.3;
-  Eigen::Vector2d p = object.pose.p.head<2>();
-  if (object.plane) p += kBefore * object.plane->normal.head<2>();
-  return contains(room.polygon, p);
 }
 
 std::vector<ParamSpec> object_params() {

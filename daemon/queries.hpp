@@ -45,7 +45,5 @@ Answer query_events(const LiveEvents& events, const Params& params);
 double level_distance(const MapObject& object, const Eigen::Vector2d& point);
 /// Distance (m) from a point of the map frame to the object's rectangle; a chair's to the seat's centre.
 double distance(const MapObject& object, const Eigen::Vector3d& point);
-/// Whether it stands in the room or, a wall, bounds it.
-bool is_in_room(const MapObject& object, const Room& room);
 
 }  // namespace kinemap

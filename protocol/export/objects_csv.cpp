@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/export/objects_csv.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/mapper/polygon.hpp"
+#include "protocol/rooms.hpp"
 #include "protocol/text_format.hpp"
 
 namespace kinemap {
@@ -42,10 +41,8 @@ double heading_deg(const MapObject& object) {
 
 std::string rooms_of(const MapSnapshot& map, const MapObject& object) {
   std::string rooms;
-  for (const Room& room : map.rooms) {
-    const bool is_wall = std::find(room.wall_ids.begin(), room.wall_ids.end(), object.id) != room.wall_ids.end();
-    if (is_wall || contains(room.polygon, object.pose.p.head<2>())) append(rooms, std::to_string(room.id));
-  }
+  for (const Room& room : map.rooms)
+    if (is_in_room(object, room)) append(rooms, std::to_string(room.id));
   return rooms;
 }
 

@@ -8,6 +8,7 @@
 
 #include "daemon/params.hpp"
 #include "daemon/url.hpp"
+#include "protocol/rooms.hpp"
 #include "tests/daemon/support.hpp"
 
 namespace kinemap {

@@ -66,7 +66,7 @@ void add_objects(CLI::App& app, Run& run) {
   CLI::App* command =
       add_command(app, run, "objects", "Ask a running kinemapd for objects by type, function and place",
                   "  kinemap objects --function sit --near 1,2           where can one sit, the nearest first\n"
-                  "  kinemap objects --type table,screen --room 1 --sort size\n"
+                  "  kinemap objects --type table,screen --room 1 --sort=-size\n"
                   "  kinemap objects --type table --near 1,2 --within 3 --json | jq '.objects[].id'\n"
                   "\nPositions are metres in the map frame.",
                   options, ask);
@@ -74,15 +74,17 @@ void add_objects(CLI::App& app, Run& run) {
   command->add_option("--type", options->types, "One or several with commas: wall, table, screen, chair")
       ->delimiter(',')
       ->type_name("TYPE");
-  command->add_option("--function", options->function, "What it is for: sit, place, view, bound")
+  command
+      ->add_option("--function", options->function,
+                   "What it is for, one or several with commas: sit, place, view, bound")
       ->type_name("FUNCTION");
   command->add_option("--near", options->near, "The nearest to this point first, with their distances, m")
       ->type_name("X,Y[,Z]");
   command->add_option("--within", options->within, "Not farther from --near than this")->type_name("METRES");
-  command->add_option("--room", options->room, "In the room with this id")->type_name("ID");
+  command->add_option("--room", options->room, "In the room with this id, its walls included")->type_name("ID");
   command
       ->add_option("--sort", options->sort,
-                   "id, distance, size, type, …: what the daemon knows; - before it turns it round")
+                   "id, distance, size, observations, first_seen or last_seen; -size: the largest first")
       ->type_name("KEY");
   command->add_option("--limit", options->limit, "At most so many")->type_name("N");
   command->add_flag("--json", options->json, "Print the daemon's answer as it is");

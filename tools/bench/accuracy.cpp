@@ -65,8 +65,8 @@ Result<std::vector<Session>> run_session(const sim::SimOptions& sim, const std::
 }  // namespace
 
 std::string session_name(const sim::SimOptions& sim) {
-  std::string key = format("seed%llu-%s-%g-speed%g", static_cast<unsigned long long>(sim.seed),
-                                to_string(sim.drift), sim.rate_hz, sim.speed);
+  std::string key = format("seed%llu-%s-%g-speed%g", static_cast<unsigned long long>(sim.seed), to_string(sim.drift),
+                           sim.rate_hz, sim.speed);
   if (sim.rooms) key += format("-rooms%d", *sim.rooms);
   if (sim.rounds) key += format("-rounds%d", *sim.rounds);
   if (sim.packet_loss) key += format("-loss%g", *sim.packet_loss);

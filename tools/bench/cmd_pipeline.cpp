@@ -72,10 +72,10 @@ int pipeline(const Options& options) {
   }
   std::string text =
       format("%s, %d runs in one thread\n\n| stage | median s | fastest s | × real time |\n|---|---|---|---|\n",
-                  scenario->name.c_str(), options.runs);
+             scenario->name.c_str(), options.runs);
   for (const Stage& stage : stages)
     text += format("| %s | %.3f | %.3f | %.0f |\n", stage.name, stage.median_s, stage.fastest_s,
-                        duration_s / stage.median_s);
+                   duration_s / stage.median_s);
   return cli::print("pipeline", text + format("\npeak memory of the process: %.0f MB\n", peak_megabytes()));
 }
 

@@ -269,7 +269,8 @@ int server(const Options& options) {
   nlohmann::ordered_json json = {
       {"scenario", scenario->name}, {"clients", figures->clients.connected}, {"lost", figures->clients.lost}};
   std::string text = format(
-      "%s; %d clients for %.0f s, %d of which never read, 10 poses and %g revisions a second\n\n"
+      "%s; %d clients for %.0f s, %d of which want bodies too and never read, 10 poses and %g revisions a second "
+      "each\n\n"
       "| | count | p50 | p99 | p99.9 | most |\n|---|---|---|---|---|---|\n",
       scenario->name.c_str(), figures->clients.connected, options.seconds, options.sleepers, options.revisions_hz);
   for (auto& [topic, values] : figures->clients.delivery_ms)

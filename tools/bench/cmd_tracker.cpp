@@ -115,10 +115,10 @@ int tracker(const Options& options) {
                                  {"steps", latencies.step_us.size()},
                                  {"solver_busy", !options.idle},
                                  {"optimisations_meanwhile", optimisations}};
-  std::string text = format(
-      "%s; %zu steps at %.0f Hz, %s\n\n| percentile | step µs | begun late by µs |\n|---|---|---|\n",
-      scenario->name.c_str(), latencies.step_us.size(), options.rate_hz,
-      options.idle ? "no solver" : format("the solver made %zu optimisations meanwhile", optimisations).c_str());
+  std::string text =
+      format("%s; %zu steps at %.0f Hz, %s\n\n| percentile | step µs | begun late by µs |\n|---|---|---|\n",
+             scenario->name.c_str(), latencies.step_us.size(), options.rate_hz,
+             options.idle ? "no solver" : format("the solver made %zu optimisations meanwhile", optimisations).c_str());
   for (const auto& [name, part] : ranks) {
     const double step = percentile(latencies.step_us, part), late = percentile(latencies.late_us, part);
     text += format("| %s | %.1f | %.1f |\n", name, step, late);

@@ -8,7 +8,8 @@ int main(int argc, char** argv) {
   app.name("bench");
   app.require_subcommand(1);
   cli::Run run;
-  for (const auto add : {bench::add_accuracy, bench::add_pipeline, bench::add_server, bench::add_tracker}) add(app, run);
+  for (const auto add : {bench::add_accuracy, bench::add_pipeline, bench::add_server, bench::add_tracker})
+    add(app, run);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

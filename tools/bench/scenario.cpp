@@ -45,7 +45,7 @@ Result<Scenario> make_scenario(const std::string& directory, const std::string& 
   if (!report) return Error{report.error()};
   return Scenario{report->session_path, report->duration_s,
                   format("simulated session, seed %llu, %d rooms, %.0f s",
-                              static_cast<unsigned long long>(options->seed), report->rooms, report->duration_s)};
+                         static_cast<unsigned long long>(options->seed), report->rooms, report->duration_s)};
 }
 
 double percentile(std::vector<double>& values, double part) {

@@ -34,7 +34,7 @@ class Client : public std::enable_shared_from_this<Client> {
   Client(net::io_context& io, const ClientsPlan& plan, ClientsReport& report)
       : plan_(plan), report_(report), stream_(io) {}
 
-  /// A small window for who never reads, so that the kernel does not read for it.
+  /// Who never reads has a small window and wants bodies too, so that the kernel's buffers are soon full.
   bool connect(bool sleeper) {
     ErrorCode error;
     auto& socket = stream_.next_layer();
@@ -46,6 +46,7 @@ class Client : public std::enable_shared_from_this<Client> {
     stream_.read_message_max(0);
     stream_.write(net::buffer(format(R"({"op":"subscribe","topics":["map","pose"],"rate_hz":%g})", plan_.rate_hz)),
                   error);
+    if (sleeper) stream_.write(net::buffer(std::string_view(R"({"op":"subscribe","topics":["body"]})")), error);
     return !error;
   }
 

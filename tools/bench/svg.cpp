@@ -8,7 +8,6 @@
 namespace kinemap::bench {
 namespace {
 
-
 std::string escaped(const std::string& words) {
   std::string out;
   for (const char c : words) {

@@ -11,7 +11,6 @@
 namespace kinemap::bench {
 namespace {
 
-
 std::string percent(const eval::Spread& spread) {
   return spread.n ? format("%.1f ± %.1f", spread.mean, spread.std) : "–";
 }

@@ -12,7 +12,6 @@
 namespace kinemap::bench {
 namespace {
 
-
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 template <class List, class Id>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/export_routes.hpp"
+#include "daemon/metrics.hpp"
 #include "daemon/openapi.hpp"
 #include "daemon/page.hpp"
 #include "daemon/queries.hpp"
@@ -15,6 +16,7 @@ namespace kinemap {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{40};
+constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 
 /// Tells this run of the daemon from any other.
 std::string random_name() {
@@ -63,6 +65,13 @@ void Api::add_routes() {
       [this](const Call& call) { return reply_of(query_events(events_, call.params)); });
   add("/api/v1/status", "What was received, detected, mapped and dropped.", {}, "status",
       [this](const Call&) { return reply_of(status_text()); });
+  routes_.add({.path = "/metrics",
+               .summary = "The same and more as numbers, for Prometheus.",
+               .content_type = kMetricsType,
+               .answer = [this](const Call&) {
+                 return Reply{.content_type = kMetricsType,
+                              .body = std::make_shared<const std::string>(metrics_text(status(), sources_.body()))};
+               }});
   add("/api/v1/openapi.json", "This API as OpenAPI 3.1.", {}, "openapi", [this](const Call&) {
     if (!openapi_) openapi_ = std::make_shared<const std::string>(openapi_text(routes_, KINEMAP_VERSION));
     return Reply{.body = openapi_};

@@ -79,11 +79,17 @@ void Pipeline::ask_for_pulse() {
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
-  return {tracker_stats_.get(), solver_stats_.get(),
-          frames_.stats(),      events_.stats(),
-          notices_.stats(),     events_held_back_.load(std::memory_order_relaxed),
-          journal_ != nullptr,  unwritten_.stats(),
-          journal_stats_.get(), entries_restored_.load(std::memory_order_relaxed),
+  return {tracker_stats_.get(),
+          tracker_steps_.get(),
+          solver_stats_.get(),
+          frames_.stats(),
+          events_.stats(),
+          notices_.stats(),
+          events_held_back_.load(std::memory_order_relaxed),
+          journal_ != nullptr,
+          unwritten_.stats(),
+          journal_stats_.get(),
+          entries_restored_.load(std::memory_order_relaxed),
           entries_to_restore_};
 }
 
@@ -126,9 +132,12 @@ void Pipeline::begin_session(const SuitFrame& first, const std::stop_token& stop
 void Pipeline::take_frame(SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop) {
   if (!session_open_) begin_session(frame, stop);
   frame.time_s += time_offset_s_;
-  live_body_.set(live_body_of(frame, now_s()));
+  const double begin_s = now_s();
+  live_body_.set(live_body_of(frame, begin_s));
   events.clear();
   tracker_.step(frame, events);
+  steps_.add(now_s() - begin_s);
+  tracker_steps_.set(steps_);
   tracker_stats_.set(tracker_.stats());
   for (Event& event : events) send(journal::entry_of(std::move(event)), stop);
   if (journal_ && frame.time_s >= next_mark_s_) {
@@ -188,10 +197,13 @@ void Pipeline::solve(const std::stop_token& stop) {
       events_.wait(ticket);
       continue;
     }
-    const auto begin = std::chrono::steady_clock::now();
+    const auto optimisations = mapper_.snapshot()->graph.optimisations;
+    const double begin_s = now_s();
     take_entry(**message);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = now_s() - begin_s;
     ++stats.messages;
+    stats.events.add(seconds);
+    if (mapper_.snapshot()->graph.optimisations > optimisations) stats.optimisations.add(seconds);
     stats.busy_s += seconds;
     stats.longest_s = std::max(stats.longest_s, seconds);
     solver_stats_.set(stats);

@@ -14,6 +14,7 @@
 #include "core/map.hpp"
 #include "core/mapper/mapper.hpp"
 #include "core/tracker/tracker.hpp"
+#include "daemon/durations.hpp"
 #include "daemon/latest.hpp"
 #include "daemon/live_body.hpp"
 #include "daemon/resume.hpp"
@@ -33,12 +34,15 @@ struct Notice {
 
 struct SolverStats {
   std::uint64_t messages = 0;
-  double longest_s = 0.0;  ///< the longest time one message took
-  double busy_s = 0.0;     ///< all of them together
+  double longest_s = 0.0;   ///< the longest time one message took
+  double busy_s = 0.0;      ///< all of them together
+  Durations events;         ///< each of them
+  Durations optimisations;  ///< of these, those in which the graph was optimised
 };
 
 struct PipelineStats {
   TrackerStats tracker;
+  Durations tracker_steps;  ///< one for each frame
   SolverStats solver;
   RingStats frames, events, notices;
   std::uint64_t events_held_back = 0;  ///< events that had to wait because the solver was that far behind
@@ -134,6 +138,7 @@ class Pipeline {
   LatestValue<LiveBody> live_body_;  // detection → everyone who asks
   std::atomic<std::uint64_t> pulse_asked_{0}, pulse_{0};
   LatestValue<TrackerStats> tracker_stats_;         // detection → everyone who asks
+  LatestValue<Durations> tracker_steps_;            // detection → everyone who asks
   LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks
   LatestValue<JournalStats> journal_stats_;         // journal → everyone who asks
@@ -151,6 +156,7 @@ class Pipeline {
   std::optional<WearerInfo> wearer_;  // told before that
   double time_offset_s_ = 0.0;        // stream time of the session at the stream's time 0
   double next_mark_s_ = 0.0;
+  Durations steps_;
 
   Mapper mapper_;  // solver thread only
   std::jthread solver_, recorder_, detection_;

@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/process_stats.hpp"
+#include "daemon/stream_counters.hpp"
 #include "protocol/json_text.hpp"
 
 namespace kinemap {
@@ -21,29 +22,10 @@ double rounded(double value, double per_unit = 1e3) { return std::round(value * 
 Json stream_json(const AssemblerStats& s) {
   Json faults = Json::object();
   for (std::size_t i = 0; i < s.faults.size(); ++i) faults[mxtp::to_string(static_cast<mxtp::Fault>(i))] = s.faults[i];
+  Json json = {{"datagrams", s.datagrams}, {"bytes", s.bytes}, {"faults", std::move(faults)}};
   // Up to refused_bones each datagram is in exactly one counter; the rest counts samples and events.
-  return {{"datagrams", s.datagrams},
-          {"bytes", s.bytes},
-          {"faults", std::move(faults)},
-          {"used", s.used},
-          {"waiting", s.waiting},
-          {"skipped_types", s.skipped_types},
-          {"meta", s.meta},
-          {"duplicates", s.duplicates},
-          {"late", s.late},
-          {"incomplete_datagrams", s.incomplete_datagrams},
-          {"malformed", s.malformed},
-          {"other_character", s.other_character},
-          {"other_sender", s.other_sender},
-          {"not_a_person", s.not_a_person},
-          {"refused_pinned", s.refused_pinned},
-          {"refused_bones", s.refused_bones},
-          {"frames", s.frames},
-          {"incomplete", s.incomplete},
-          {"lost_samples", s.lost_samples},
-          {"restarts", s.restarts},
-          {"clock_jumps", s.clock_jumps},
-          {"odd_bones", s.odd_bones}};
+  for (const StreamCounter& counter : kStreamCounters) json[counter.name] = s.*counter.value;
+  return json;
 }
 
 Json socket_json(const ReceiverCounts& c) {
@@ -160,13 +142,7 @@ Json api_json(const ApiCounts& api) {
           {"slow_clients_closed", api.slow_clients_closed}};
 }
 
-Json process_json() {
-  Json json = {{"pid", ::getpid()}};
-  std::uint64_t size = 0, resident = 0;
-  std::ifstream statm("/proc/self/statm");
-  if (statm >> size >> resident) json["rss_bytes"] = resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  return json;
-}
+Json process_json() { return {{"pid", ::getpid()}, {"rss_bytes", process_stats().resident_bytes}}; }
 
 }  // namespace
 

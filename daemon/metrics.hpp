@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "daemon/live_body.hpp"
+#include "daemon/status.hpp"
+
+namespace kinemap {
+
+/// /metrics, in Prometheus' text format; daemon/README.md says what to look at.
+std::string metrics_text(const Status& status, const LiveBody& body);
+
+}  // namespace kinemap

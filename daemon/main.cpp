@@ -8,6 +8,7 @@
 
 #include "daemon/config.hpp"
 #include "daemon/daemon.hpp"
+#include "daemon/logging.hpp"
 #include "daemon/signals.hpp"
 
 namespace {

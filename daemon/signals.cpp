@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/signals.hpp"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #ifdef KINEMAP_SYSTEMD
 #include <systemd/sd-daemon.h>
 #endif
 
 #include <csignal>
-#include <memory>
 
 namespace kinemap {
 
@@ -51,12 +48,6 @@ std::optional<std::chrono::milliseconds> watchdog_period() {
   if (sd_watchdog_enabled(0, &microseconds) > 0) return std::chrono::milliseconds(microseconds / 1000);
 #endif
   return std::nullopt;
-}
-
-void set_up_logging() {
-  auto logger = std::make_shared<spdlog::logger>("kinemapd", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-  logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
-  spdlog::set_default_logger(std::move(logger));
 }
 
 }  // namespace kinemap

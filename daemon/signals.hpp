@@ -36,7 +36,4 @@ void notify_service_manager(const std::string& state);
 /// How often systemd wants a sign of life (WatchdogSec=); nullopt when it wants none.
 std::optional<std::chrono::milliseconds> watchdog_period();
 
-/// Messages go to stderr, which systemd's journal keeps.
-void set_up_logging();
-
 }  // namespace kinemap

@@ -1,12 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install build/release [--prefix /usr]: the two programs, their manual pages, completion and the service.
+# cmake --install build/release [--prefix /usr]: the two programs, their manual pages, completion, the service and what there is to read.
 include(GNUInstallDirs)
 set(said ${PROJECT_BINARY_DIR}/tools/kinemap)
+set(pages ${said}/kinemap.1 ${PROJECT_SOURCE_DIR}/daemon/kinemapd.8)
+foreach(page ${pages})
+  get_filename_component(name ${page} NAME)
+  get_filename_component(section ${page} LAST_EXT)
+  string(REPLACE . man section ${section})
+  set(packed ${PROJECT_BINARY_DIR}/man/${name}.gz)
+  add_custom_command(OUTPUT ${packed} COMMAND gzip -9nc ${page} > ${packed} DEPENDS ${page} VERBATIM)
+  list(APPEND packed_pages ${packed})
+  install(FILES ${packed} DESTINATION ${CMAKE_INSTALL_MANDIR}/${section})
+endforeach()
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/man)
+add_custom_target(kinemap_pages ALL DEPENDS ${packed_pages})
+add_dependencies(kinemap_pages kinemap_said)
+
 install(TARGETS kinemap kinemapd)
-install(FILES ${said}/kinemap.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(FILES ${PROJECT_SOURCE_DIR}/daemon/kinemapd.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8)
 install(FILES ${said}/kinemap.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME kinemap)
-install(FILES ${said}/_kinemap DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+install(FILES ${said}/_kinemap DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${said}/kinemap.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 install(FILES ${PROJECT_SOURCE_DIR}/systemd/kinemapd.service DESTINATION lib/systemd/system)
 install(FILES ${PROJECT_SOURCE_DIR}/config/default.json DESTINATION ${CMAKE_INSTALL_DATADIR}/kinemap) # /etc is the administrator's
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+foreach(part config protocol daemon systemd)
+  install(FILES ${PROJECT_SOURCE_DIR}/${part}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${part})
+endforeach()

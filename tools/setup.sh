@@ -17,6 +17,7 @@ packages=(
   libeigen3-dev libboost-dev libceres-dev libopenblas-dev     # mathematics, Asio, Beast, Lockfree
   libspdlog-dev nlohmann-json3-dev libcli11-dev libexpat1-dev zlib1g-dev # log, JSON, command line, XML, gzip
   libsystemd-dev                                              # readiness, watchdog
+  dpkg-dev file                                               # the Debian package
   libgtest-dev libgmock-dev libbenchmark-dev                  # tests
   python3-jsonschema                                          # the map's schema is tested with it
 )

@@ -54,8 +54,9 @@ struct MagneticField {
 struct SuitFrame {
   double time_s = 0.0;      ///< stream time since the first frame of this wearer; never decreases
   std::uint64_t index = 0;  ///< sample counter, unwrapped; gaps are lost samples
-  bool discontinuity =
-      false;  ///< first frame after a restart of the suit or a jump of its clock: no odometry from the frame before
+  /// First frame after a restart of the suit, a reset of its origin or a change of the body: no odometry from the frame
+  /// before.
+  bool discontinuity = false;
   std::array<Pose, kSegmentCount> segments;
   std::optional<Eigen::Vector3d> center_of_mass;  ///< odom frame, m; only when the suit streams type 24
 

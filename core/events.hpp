@@ -17,9 +17,11 @@ struct KeyPose {
   KeyPoseId id = 0;
   double time_s = 0.0;
   Pose T_odom_pelvis;
-  double path_m = 0.0;         ///< length of the level pelvis path since the key pose before
-  double turn_rad = 0.0;       ///< sum of |heading change| since the key pose before
-  bool discontinuity = false;  ///< nothing is known of the motion from the key pose before (suit restarted)
+  double path_m = 0.0;    ///< length of the level pelvis path since the key pose before
+  double turn_rad = 0.0;  ///< sum of |heading change| since the key pose before
+  /// A break: the suit's world is another one than at the key pose before (it was restarted, or its origin was reset),
+  /// or nothing is known of the way from there.
+  bool discontinuity = false;
   /// Point under the ankle of the foot that carries the weight, on the sole, in the pelvis frame (m); absent in the air
   /// or when sitting.
   std::optional<Eigen::Vector3d> p_pelvis_stance;

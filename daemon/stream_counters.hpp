@@ -44,6 +44,7 @@ inline constexpr std::array kStreamCounters = [] {
       {"lost_samples", &S::lost_samples, K::LostFrame},
       {"restarts", &S::restarts, K::Incident},
       {"clock_jumps", &S::clock_jumps, K::Incident},
+      {"jumps", &S::jumps, K::Incident},
       {"odd_bones", &S::odd_bones, K::Incident},
   });
 }();

@@ -48,6 +48,7 @@ struct AssemblerStats {
   std::uint64_t lost_samples = 0;  ///< gaps of the sample counter
   std::uint64_t restarts = 0;      ///< of the counter, or of the stream from another port, sender or character
   std::uint64_t clock_jumps = 0;   ///< the time code and the counter disagreed
+  std::uint64_t jumps = 0;         ///< the body moved as no body can: the suit's origin or axes were reset
   std::uint64_t odd_bones = 0;     ///< samples whose bone lengths disagree with those before, handed on or not
 
   [[nodiscard]] std::uint64_t accounted() const;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/reach.hpp"
+
 namespace kinemap {
 
 namespace {
@@ -115,7 +117,7 @@ bool FrameGuard::is_pinned(const SuitFrame& frame) {
     return false;
   }
   if (!pinned_like_since_s_) pinned_like_since_s_ = frame.time_s;
-  const bool jumped = !last_pelvis_ || (p - *last_pelvis_).norm() > kPinnedJumpM;
+  const bool jumped = !last_pelvis_ || (p - last_pelvis_->p).norm() > kPinnedJumpM;
   pinned_ = jumped || frame.time_s - *pinned_like_since_s_ >= kPinnedAfterS;
   if (pinned_) pinned_like_since_s_.reset();
   return pinned_;
@@ -130,8 +132,9 @@ FrameGuard::Result FrameGuard::check(SuitFrame& frame) {
     out.verdict = Verdict::Pinned;
     return out;
   }
-  if (last_pelvis_) out.pelvis_step_m = (frame[Pelvis].p - *last_pelvis_).norm();
-  last_pelvis_ = frame[Pelvis].p;
+  out.jumped = last_pelvis_ && !within_reach(*last_pelvis_, frame[Pelvis], frame.time_s - last_s_);
+  last_pelvis_ = frame[Pelvis];
+  last_s_ = frame.time_s;
   auto& last = last_q_.emplace();
   for (std::size_t i = 0; i < kSegmentCount; ++i) last[i] = frame.segments[i].q;
   return out;

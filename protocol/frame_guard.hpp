@@ -19,9 +19,9 @@ class FrameGuard {
   };
   struct Result {
     Verdict verdict = Verdict::Good;
-    bool odd_bones = false;      ///< a bone's length disagrees with those before
-    bool new_body = false;       ///< bones of other lengths have stayed: the wearer was measured anew
-    double pelvis_step_m = 0.0;  ///< from the last good frame
+    bool odd_bones = false;  ///< a bone's length disagrees with those before
+    bool new_body = false;   ///< bones of other lengths have stayed: the wearer was measured anew
+    bool jumped = false;     ///< moved since the last good frame as no body can: the suit's world was moved
   };
 
   /// `time_s` of the frame must be set. Changes only the signs of its quaternions.
@@ -39,7 +39,8 @@ class FrameGuard {
   static Lengths lengths_of(const SuitFrame& frame);
 
   std::optional<std::array<Eigen::Quaterniond, kSegmentCount>> last_q_;
-  std::optional<Eigen::Vector3d> last_pelvis_;
+  std::optional<Pose> last_pelvis_;
+  double last_s_ = 0.0;
   std::optional<Lengths> lengths_;
   std::optional<double> wrong_since_s_;
   bool pinned_ = false;

@@ -9,11 +9,7 @@ namespace kinemap {
 
 namespace {
 
-// After a jump of the time code alone, the pelvis tells whether the wearer's motion goes on (the sender's clock was
-// set) or not.
-constexpr double kPlausibleStepM = 0.3;
-constexpr double kPlausibleSpeed = 3.0;  // m/s
-constexpr double kLeastField = 1e-3;     // of the undisturbed one
+constexpr double kLeastField = 1e-3;  // of the undisturbed one
 
 /// nullopt where there is no field at all: a sensor without a magnetometer.
 std::optional<MagneticField> field_of(const std::optional<mxtp::TrackerItem>& tracker) {
@@ -82,15 +78,14 @@ void FrameMaker::take(const Sample& sample, const Assembler::FrameSink& sink) {
   SuitFrame frame = frame_of(sample);
   frame.time_s = stamp.time_s;
   frame.index = static_cast<std::uint64_t>(sample.clock.index);
-  take(std::move(frame), sample.datagrams, stamp.clock_jumped, sink);
+  take(std::move(frame), sample.datagrams, sink);
 }
 
-void FrameMaker::take(SuitFrame frame, std::uint64_t datagrams, bool clock_jumped, const Assembler::FrameSink& sink) {
+void FrameMaker::take(SuitFrame frame, std::uint64_t datagrams, const Assembler::FrameSink& sink) {
   const FrameGuard::Result result = guard_.check(frame);
   if (result.odd_bones) ++stats_->odd_bones;
   if (result.verdict == FrameGuard::Verdict::WrongBones) {
     stats_->refused_bones += datagrams;
-    discontinuity_ = discontinuity_ || clock_jumped;
     return;
   }
   pinned_ = result.verdict == FrameGuard::Verdict::Pinned;
@@ -100,9 +95,10 @@ void FrameMaker::take(SuitFrame frame, std::uint64_t datagrams, bool clock_jumpe
     return;
   }
   if (result.new_body) discontinuity_ = true;
-  const double step_s = frame.time_s - last_time_s_;
-  if (clock_jumped && result.pelvis_step_m > kPlausibleStepM + kPlausibleSpeed * step_s) discontinuity_ = true;
-  last_time_s_ = frame.time_s;
+  if (result.jumped && !discontinuity_) {
+    ++stats_->jumps;
+    discontinuity_ = true;
+  }
   if (!first_time_s_) {
     first_time_s_ = frame.time_s;
     discontinuity_ = false;  // there is no frame before

@@ -31,7 +31,7 @@ class FrameMaker {
   void prime(std::span<const SampleClock> samples) { timeline_.prime(samples); }
   void take(const Sample& sample, const Assembler::FrameSink& sink);
   /// Takes a frame that has poses, index and a time that never decreases (any origin); it came in so many datagrams.
-  void take(SuitFrame frame, std::uint64_t datagrams, bool clock_jumped, const Assembler::FrameSink& sink);
+  void take(SuitFrame frame, std::uint64_t datagrams, const Assembler::FrameSink& sink);
   /// The stream begins anew, from another port or machine; with `other_wearer` nothing known of the body holds any
   /// longer.
   void restart(bool other_wearer);
@@ -47,7 +47,6 @@ class FrameMaker {
   bool pinned_ = false;
   bool discontinuity_ = false;  ///< of the next frame handed on
   std::optional<double> first_time_s_;
-  double last_time_s_ = 0.0;
   std::optional<std::uint64_t> last_index_;
   std::uint64_t index_offset_ = 0;
 };

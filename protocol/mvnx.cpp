@@ -183,7 +183,7 @@ class MvnxPlayer {
       const Eigen::Vector3d com(f.center_of_mass[0], f.center_of_mass[1], f.center_of_mass[2]);
       if (com.allFinite()) frame.center_of_mass = com;
     }
-    maker_.take(frame, 1, false, [this](const SuitFrame& good) {
+    maker_.take(frame, 1, [this](const SuitFrame& good) {
       summary_.duration_s = good.time_s;
       if (sink_->on_frame) sink_->on_frame(good);
     });

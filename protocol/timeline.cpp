@@ -109,7 +109,9 @@ Timeline::Stamp Timeline::stamp(const SampleClock& sample) {
       code_time_s_ += code_step_s;
       time_s_ += follow(step_s);
     } else {
-      time_s_ += step_s;
+      // Two clocks against one: a sender that paused, counter and all.
+      const bool paused = code_step_s > step_s && std::abs(code_step_s - arrival_step_s) <= kJumpS + 0.05 * code_step_s;
+      time_s_ += paused ? code_step_s : step_s;
       code_time_s_ = time_s_;
       marks_.clear();
       out.clock_jumped = true;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/reach.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -11,19 +13,51 @@ constexpr double kStep = 0.08;       // m: a stance foot that is farther from th
 constexpr int kSteadyStances = 3;    // so many level stances in a row are a level
 constexpr double kSameLevel = 0.15;  // m: closer to a known level than this is that level
 
+// What a wearer may have done unseen, at a break in odometry; standard deviations.
+constexpr double kUnseenWalk = 1.0;       // m/s …
+constexpr double kUnseenWalkMost = 10.0;  // m
+constexpr double kUnseenClimb = 0.1;      // m/s: sat down, stood up; stays on its floor …
+constexpr double kUnseenClimbMost = 0.3;  // m
+constexpr double kUnseenTurn = 0.5;       // rad/s …
+constexpr double kUnseenTurnMost = 2.0;   // rad: any heading
+constexpr double kJolt = 0.03;            // m, rad: what is not known even of one frame to the next
+constexpr double kOrigin = 1.5;           // m level: a suit that is set up anew begins so near to its origin
+
 double squared(double x) { return x * x; }
+
+double grown(double rate, double seconds, double most) { return std::min(std::hypot(kJolt, rate * seconds), most); }
+
+graph::Matrix6 break_sqrt_information(double seconds, const MapperConfig::Odometry& config) {
+  const double level = grown(kUnseenWalk, seconds, kUnseenWalkMost);
+  const double up = grown(kUnseenClimb, seconds, kUnseenClimbMost);
+  const double heading = grown(kUnseenTurn, seconds, kUnseenTurnMost);
+  graph::Matrix6 information = graph::Matrix6::Zero();
+  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad,
+      1.0 / heading;
+  return information;
+}
+
+/// After a break: whether the suit's world may still be the old one (some of the way is missing in the journal, or its
+/// stream was interrupted).
+bool same_world(const KeyPose& from, const KeyPose& to) {
+  const Pose& a = from.T_odom_pelvis;
+  const Pose& b = to.T_odom_pelvis;
+  const bool began_anew = b.p.head<2>().norm() < kOrigin && a.p.head<2>().norm() > kOrigin;
+  return !began_anew && within_reach(a, b, to.time_s - from.time_s);
+}
 
 }  // namespace
 
+Pose odometry_step(const KeyPose& from, const KeyPose& to) {
+  const Pose& before = from.T_odom_pelvis;
+  const Pose& after = to.T_odom_pelvis;
+  const bool moved_world = to.discontinuity && !same_world(from, to);
+  return before.inverse() * (moved_world ? stayed(before, after) : after);
+}
+
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
                                          const MapperConfig::Odometry& config) {
-  // A restart of the suit says nothing of the way in between: so wide that only landmarks tie the parts together.
-  if (to.discontinuity) {
-    graph::Matrix6 loose = graph::Matrix6::Identity();
-    loose.topLeftCorner<3, 3>() /= 10.0;
-    loose.bottomRightCorner<3, 3>() /= 2.0;
-    return loose;
-  }
+  if (to.discontinuity) return break_sqrt_information(to.time_s - from.time_s, config);
   const double dt = std::max(0.01, to.time_s - from.time_s);
   const double level = std::sqrt(squared(config.translation_m_per_sqrt_m) * to.path_m +
                                  squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
@@ -63,7 +97,7 @@ void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) {
   graph::BetweenFactor between;
   between.i = from.id;
   between.j = key_pose.id;
-  between.T_i_j = from.T_odom_pelvis.inverse() * key_pose.T_odom_pelvis;
+  between.T_i_j = odometry_step(from, key_pose);
   between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s <= suspect_until_s_, config_);
   graph.between.push_back(between);
   graph.poses.push_back(graph.poses.back() * between.T_i_j);
@@ -78,6 +112,10 @@ void Odometry::suspect_heading(double begin_s, double end_s, graph::Graph& graph
 }
 
 void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
+  if (key_pose.discontinuity) {
+    last_stance_z_.reset();  // of another world
+    off_level_ = 0.0;        // assume that a restart did not change the floor
+  }
   if (!key_pose.p_pelvis_stance) return;
   const double z_odom = (key_pose.T_odom_pelvis * *key_pose.p_pelvis_stance).z();
   const double step = last_stance_z_ ? z_odom - *last_stance_z_ : 0.0;
@@ -86,8 +124,6 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
     level_z_ = z_odom;
     levels_.push_back(level_z_);
     on_level_ = true;
-  } else if (key_pose.discontinuity) {
-    off_level_ = 0.0;  // assume that a restart did not change the floor
   } else if (std::abs(step) > kStep || !on_level_) {
     off_level_ += step;
     steady_ = std::abs(step) > kStep ? 0 : steady_ + 1;

@@ -43,6 +43,9 @@ class Odometry {
   bool on_level_ = false;
 };
 
+/// The way between two key poses, in the first one's frame, as the suit says; after a break, as a body can have moved.
+Pose odometry_step(const KeyPose& from, const KeyPose& to);
+
 /// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame.
 /// `magnetic`: beside metal.
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,

@@ -57,6 +57,7 @@ class Tracker::Impl {
   void restart(std::vector<Event>& events) {
     put(sitting_.reset(), events);
     put(traces_.close(), events);
+    put(key_poses_.finish(), events);  // the last that is known before the break
     gesture_.reset();
     stance_.reset();
     magnetic_.reset();

@@ -245,6 +245,35 @@ TEST(Assembler, ATimeCodeJumpWithALeapOfTheBodyIsADiscontinuity) {
   for (const auto& f : bench.frames) EXPECT_EQ(f.discontinuity, f.index == 300);
 }
 
+TEST(Assembler, AResetOfTheOriginIsADiscontinuityAndCounted) {
+  for (const std::uint64_t lost : {0U, 30U}) {
+    Bench bench;
+    bench.add(walk(0, 300));
+    for (std::uint64_t k = 300 + lost; k < 600; ++k) {
+      bench.add(
+          {mxtp::encode_poses(header_of(k), body_items(k, {-12, 3, 0}))[0], 100.0 + static_cast<double>(k) / 120.0});
+    }
+    bench.flush();
+    ASSERT_EQ(bench.frames.size(), 600U - lost);
+    for (const auto& f : bench.frames) EXPECT_EQ(f.discontinuity, f.index == 300 + lost);
+    EXPECT_EQ(bench.stats().jumps, 1U);
+    EXPECT_EQ(bench.stats().restarts, 0U);
+  }
+}
+
+TEST(Assembler, ASenderThatPausesWithItsCounterIsSilentForSoLong) {
+  Bench bench;
+  bench.add(walk(0, 300));
+  for (std::uint64_t k = 300; k < 600; ++k) {  // the wearer walked 5 m meanwhile
+    bench.add({mxtp::encode_poses(header_of(k, 120.0, 0, 20'000), body_items(k, {4, 3, 0}))[0],
+               120.0 + static_cast<double>(k) / 120.0});
+  }
+  bench.flush();
+  ASSERT_EQ(bench.frames.size(), 600U);
+  for (const auto& f : bench.frames) EXPECT_FALSE(f.discontinuity) << "20 s are enough to walk 5 m";
+  EXPECT_NEAR(bench.frames[300].time_s - bench.frames[299].time_s, 20.0, 0.05);
+}
+
 TEST(Assembler, ATimeCodeThatStandsStill) {
   Bench bench;
   for (auto a : walk(0, 600)) {

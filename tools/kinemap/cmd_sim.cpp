@@ -152,7 +152,8 @@ void add_what(CLI::App& command, Options& options) {
   command.add_option("--room-size", options.room_size, "Length and width of every room, m")
       ->expected(2)
       ->check(CLI::Range(3.0, 9.0));
-  command.add_option("--rounds", options.rounds, "Times round")->check(CLI::Range(1, 4));
+  command.add_option("--rounds", options.rounds, "Times round; more than 4 are a session of hours")
+      ->check(CLI::Range(1, 500));
   command.add_option("--rate", options.sim.rate_hz, "Samples a second")->capture_default_str()->type_name("HZ");
   command.add_option("--stature", options.stature_m, "Body height, m")->check(CLI::Range(1.55, 1.95));
   command.add_option("--pace", options.sim.speed, "Factor on walking and tracing speed")

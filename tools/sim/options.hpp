@@ -34,7 +34,7 @@ struct SimOptions {
   Shell shell = Shell::Auto;
   Scene scene = Scene::Auto;
   std::optional<std::array<double, 2>> room_size;  ///< m, inner length and width of every room, 3–9
-  std::optional<int> rounds;                       ///< 1–4; unset: 2 or 3
+  std::optional<int> rounds;                       ///< 1–500; unset: 2 or 3; more than 4 are a session of hours
   double rate_hz = 120.0;                          ///< 60, 100, 120 or 240 in MVN
   std::optional<double> stature_m;                 ///< 1.55–1.95
   double speed = 1.0;                              ///< factor on walking and tracing speed, 0.5–2

@@ -9,6 +9,7 @@ namespace kinemap::sim {
 namespace {
 
 constexpr double kShortest_s = 180.0, kLongest_s = 356.0;
+constexpr int kFewRounds = 4;  // more are a long session: as many as asked for, each about as long as the first
 
 /// Something to visit: which list, which index.
 struct Stop {
@@ -34,7 +35,7 @@ class Tour {
     const int rounds = options_.rounds ? *options_.rounds : random_.integer(2, 3);
     std::vector<double> ends;
     for (int round = 0; round < rounds || (composer_.now() < kShortest_s && !options_.rounds); ++round) {
-      if (round > 0 && composer_.now() > kLongest_s - 20.0) break;
+      if (round > 0 && composer_.now() > longest_s_ - 20.0) break;
       go_round(round, rounds);
       ends.push_back(composer_.now());
     }
@@ -102,7 +103,7 @@ class Tour {
 
   void go_round(int round, int rounds) {
     // In later rounds as much as time allows; in the first nearly everything.
-    const double left_s = kLongest_s - composer_.now(), rounds_left = std::max(1, rounds - round);
+    const double left_s = longest_s_ - composer_.now(), rounds_left = std::max(1, rounds - round);
     const double share = round == 0 ? 1.0 : std::clamp(left_s / rounds_left / first_round_s_, 0.35, 0.95);
     std::vector<int> rooms;
     for (std::size_t i = 0; i < building_.rooms.size(); ++i) rooms.push_back(static_cast<int>(i));
@@ -115,9 +116,9 @@ class Tour {
         const bool wall = stop.kind == Stop::Kind::Wall;
         // A wall whose neighbour was never touched has no length that anybody could know.
         const double wanted = round > 0 ? share : wall ? 1.0 : late(room) ? 0.6 : 0.97;
-        if (round == 0 && composer_.now() > (wall ? 0.78 : 0.68) * kLongest_s) continue;  // time for a second round
+        if (round == 0 && composer_.now() > (wall ? 0.78 : 0.68) * longest_s_) continue;  // time for a second round
         const bool first_seat = stop.kind == Stop::Kind::Chair && !sat_;
-        if (composer_.now() > kLongest_s - 32.0 || (!random_.chance(wanted) && !first_seat)) continue;
+        if (composer_.now() > longest_s_ - 32.0 || (!random_.chance(wanted) && !first_seat)) continue;
         if (!may_touch(stop.id)) {
           walk_past(stop);
           continue;
@@ -128,17 +129,17 @@ class Tour {
       }
     }
     if (round == 0) first_round_s_ = std::max(30.0, composer_.now());
-    if (composer_.now() < kLongest_s) composer_.walk_to(home_, std::nullopt);
+    if (composer_.now() < longest_s_) composer_.walk_to(home_, std::nullopt);
   }
 
   /// Whether the first round takes so long that little time would be left for a second one; `room` counts from 0.
   [[nodiscard]] bool late(int room) const {
-    return composer_.now() > 0.6 * kLongest_s * (room + 0.7) / static_cast<double>(building_.rooms.size());
+    return composer_.now() > 0.6 * longest_s_ * (room + 0.7) / static_cast<double>(building_.rooms.size());
   }
 
   /// Touches the nearest known object again when it is time to.
   void close_loop(const Stop& coming) {
-    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2 || composer_.now() > 0.8 * kLongest_s)
+    if (composer_.walked() - last_closure_ < next_closure_ || touched_.size() < 2 || composer_.now() > 0.8 * longest_s_)
       return;
     const Stop* best = nullptr;
     double least = 1e9;
@@ -181,7 +182,7 @@ class Tour {
   /// Ids of what was touched or sat on: several when the wearer goes on to the next thing in the same gesture.
   std::vector<int> draw(const Stop& stop, bool brief) {
     const bool goes_on =
-        !brief && composer_.now() < kLongest_s - 60.0 && random_.chance(composer_.wearer().habits.chain_chance);
+        !brief && composer_.now() < longest_s_ - 60.0 && random_.chance(composer_.wearer().habits.chain_chance);
     switch (stop.kind) {
       case Stop::Kind::Wall: {
         const WallFace& wall = building_.walls[stop.index];
@@ -232,6 +233,7 @@ class Tour {
   const SimOptions& options_;
   const Building& building_;
   Random& random_;
+  const double longest_s_ = options_.rounds.value_or(1) > kFewRounds ? *options_.rounds* kLongest_s : kLongest_s;
   Composer composer_;
   std::vector<Stop> stops_;
   std::vector<bool> ccw_;

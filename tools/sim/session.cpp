@@ -33,7 +33,7 @@ Reach reach_of(const Wearer& w) {
 std::optional<std::string> check(const SimOptions& o) {
   const auto outside = [](double v, double low, double high) { return !(v >= low && v <= high); };
   if (o.rooms && outside(*o.rooms, 1, 3)) return "rooms must be 1, 2 or 3";
-  if (o.rounds && outside(*o.rounds, 1, 4)) return "rounds must be 1–4";
+  if (o.rounds && outside(*o.rounds, 1, 500)) return "rounds must be 1–500";
   if (outside(o.rate_hz, 20, 500)) return "rate must be 20–500 Hz (MVN: 60, 100, 120, 240)";
   if (o.stature_m && outside(*o.stature_m, 1.4, 2.1)) return "stature must be 1.4–2.1 m";
   if (outside(o.speed, 0.5, 2.0)) return "speed must be 0.5–2";

@@ -68,7 +68,53 @@ TEST(Odometry, NoiseGrowsWithWayTimeAndTurn) {
   EXPECT_LT(odometry_sqrt_information(from, later, false, config)(5, 5), base(5, 5));
   EXPECT_LT(odometry_sqrt_information(from, to, true, config)(5, 5), base(5, 5));
   EXPECT_LT(odometry_sqrt_information(from, turned, false, config)(5, 5), base(5, 5));
-  EXPECT_LT(odometry_sqrt_information(from, restarted, false, config)(0, 0), 1.0);
+  EXPECT_LE(odometry_sqrt_information(from, restarted, false, config)(0, 0), 1.0);
+}
+
+TEST(Odometry, AResetOfTheSuitsWorldMovesNobody) {
+  Odometry odometry{{}};
+  graph::Graph graph;
+  for (KeyPoseId i = 0; i < 20; ++i) odometry.add(at(i, 2.0 + 0.2 * i, 0.95), graph);
+  KeyPose reset = at(20, 0.0, 0.90);
+  reset.time_s = 19.0 + 1.0 / 120.0;
+  reset.T_odom_pelvis.q = Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ());
+  reset.path_m = 0.0;
+  reset.discontinuity = true;
+  odometry.add(reset, graph);
+  EXPECT_NEAR((graph.poses[20].p - graph.poses[19].p).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(graph.poses[20].q.angularDistance(graph.poses[19].q), 0.0, 1e-6);
+  const auto& information = graph.between.back().sqrt_information;
+  EXPECT_GT(information(0, 0), 20.0) << "in one frame a body moves by centimetres";
+  EXPECT_GT(information(5, 5), 20.0);
+  // The wearer walks on, in the new world along another axis.
+  KeyPose next = reset;
+  next.id = 21, next.time_s = 20.0, next.path_m = 0.2, next.discontinuity = false;
+  next.T_odom_pelvis.p += next.T_odom_pelvis.q * Eigen::Vector3d(0.2, 0, 0);
+  odometry.add(next, graph);
+  EXPECT_NEAR((graph.poses[21].p - graph.poses[19].p - Eigen::Vector3d(0.2, 0, 0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(odometry.floor_z(), 0.0, 1e-9) << "the new world's floor is the same floor";
+}
+
+TEST(Odometry, ARestartLeavesPlaceAndHeadingOpenButNotTheLevel) {
+  Odometry odometry{{}};
+  graph::Graph graph;
+  for (KeyPoseId i = 0; i < 20; ++i) odometry.add(at(i, 2.0 + 0.2 * i, 0.95), graph);
+  KeyPose restarted = at(20, 0.3, 0.95);
+  restarted.time_s = 19.0 + 60.0;
+  restarted.discontinuity = true;
+  odometry.add(restarted, graph);
+  EXPECT_NEAR((graph.poses[20].p - graph.poses[19].p).norm(), 0.0, 1e-9) << "nobody knows better";
+  const auto& information = graph.between.back().sqrt_information;
+  EXPECT_NEAR(information(0, 0), 0.1, 1e-9);
+  EXPECT_NEAR(information(5, 5), 0.5, 1e-9);
+  EXPECT_GT(information(3, 3), 50.0);
+}
+
+TEST(Odometry, ABreakInTheRecordOfOneWorldIsWhereTheSuitSays) {
+  KeyPose from = at(0, 2.0, 0.95), to = at(1, 8.0, 0.95);
+  to.time_s = 10.0;
+  to.discontinuity = true;  // key poses were lost from a journal
+  EXPECT_NEAR(odometry_step(from, to).p.x(), 6.0, 1e-9);
 }
 
 /// Information of the heading on the way to key pose `k`, taken each second.

@@ -96,9 +96,12 @@ TEST(KeyPoses, DiscontinuityIsMarkedAndItsJumpIsNoPath) {
   frames[at].discontinuity = true;
   const Outcome outcome = track(frames);
   std::size_t marked = 0;
-  for (const KeyPose& key : outcome.key_poses) {
+  for (std::size_t k = 0; k < outcome.key_poses.size(); ++k) {
+    const KeyPose& key = outcome.key_poses[k];
     if (!key.discontinuity) continue;
     ++marked;
+    ASSERT_GT(k, 0u);
+    EXPECT_EQ(outcome.key_poses[k - 1].time_s, frames[at - 1].time_s) << "the break is no longer than it was";
     EXPECT_EQ(key.time_s, frames[at].time_s);
     EXPECT_EQ(key.path_m, 0.0);
     EXPECT_EQ(key.turn_rad, 0.0);

@@ -28,6 +28,7 @@ TEST_P(NoObject, ComesOfIt) {
   if (absent(GetParam())) GTEST_SKIP() << "RECORDING ABSENT: " << GetParam();
   const auto frames = frames_of(GetParam());
   ASSERT_GT(frames.size(), 300u);
+  for (const SuitFrame& frame : frames) EXPECT_FALSE(frame.discontinuity) << "no jump of a person is one of the suit";
   const Outcome outcome = track(frames);
   EXPECT_TRUE(outcome.traces.empty());
   EXPECT_TRUE(outcome.sittings.empty());

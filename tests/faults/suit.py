@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The suit comes and goes: faults of a suit's stream are put into a simulated recording, and the map is compared with the undisturbed one.
+
+Objects lost and false must be 0, and sizes within 2 cm where the fault carries no information away (`whole`). Exit code 1 when a criterion fails.
+
+usage: suit.py KINEMAP [--seeds N ...] [--only NAME]
+"""
+import argparse
+import json
+import math
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+SIZE_M = 0.02
+NEAR_M = 0.5  # objects of one type this near are the same
+
+
+class Packet:
+    """A UDP packet of a capture as `kinemap sim` writes it: Ethernet, IPv4."""
+
+    def __init__(self, time_s, data):
+        self.time_s, self.data = time_s, bytearray(data)
+        self.at = 14 + 4 * (data[14] & 15) + 8  # of the payload
+
+    def copy(self):
+        return Packet(self.time_s, self.data)
+
+    @property
+    def type(self):
+        return bytes(self.data[self.at + 4 : self.at + 6])
+
+    @property
+    def counter(self):
+        return struct.unpack_from(">I", self.data, self.at + 6)[0]
+
+    @counter.setter
+    def counter(self, value):
+        struct.pack_into(">I", self.data, self.at + 6, value & 0xFFFFFFFF)
+
+    @property
+    def time_code(self):
+        return struct.unpack_from(">I", self.data, self.at + 12)[0]
+
+    @time_code.setter
+    def time_code(self, value):
+        struct.pack_into(">I", self.data, self.at + 12, value % 86400000)
+
+    def segments(self):
+        return range(self.at + 24, len(self.data) - 31, 32) if self.type == b"02" else ()
+
+    def move(self, heading, shift):
+        """Turns the body about the world's origin, then shifts it."""
+        c, s = math.cos(heading), math.sin(heading)
+        ch, sh = math.cos(heading / 2), math.sin(heading / 2)
+        for at in self.segments():
+            x, y, z, w, i, j, k = struct.unpack_from(">7f", self.data, at + 4)
+            struct.pack_into(
+                ">7f", self.data, at + 4,
+                c * x - s * y + shift[0], s * x + c * y + shift[1], z + shift[2],
+                ch * w - sh * k, ch * i - sh * j, ch * j + sh * i, ch * k + sh * w,
+            )  # fmt: skip
+
+    def scale(self, factor):
+        for at in self.segments():
+            struct.pack_into(">3f", self.data, at + 4, *(factor * v for v in struct.unpack_from(">3f", self.data, at + 4)))
+
+    def pelvis(self):
+        return struct.unpack_from(">3f", self.data, self.at + 28)
+
+
+def read_pcap(path):
+    data = path.read_bytes()
+    unit = {0xA1B2C3D4: 1e-6, 0xA1B23C4D: 1e-9}[struct.unpack_from("<I", data)[0]]
+    packets, at = [], 24
+    while at < len(data):
+        seconds, fraction, size, _ = struct.unpack_from("<IIII", data, at)
+        packets.append(Packet(seconds + fraction * unit, data[at + 16 : at + 16 + size]))
+        at += 16 + size
+    return packets
+
+
+def write_pcap(path, packets):
+    with open(path, "wb") as out:
+        out.write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 1))
+        for p in packets:
+            microseconds = round(p.time_s * 1e6)
+            out.write(struct.pack("<IIII", microseconds // 1000000, microseconds % 1000000, len(p.data), len(p.data)) + p.data)
+
+
+def after(packets, moment):
+    """Packets before and from a moment (part of the session, 0–1)."""
+    begin, end = packets[0].time_s, packets[-1].time_s
+    return next(k for k, p in enumerate(packets) if p.type == b"02" and p.time_s >= begin + moment * (end - begin))
+
+
+def moved_from(packets, k, heading, anew):
+    """The suit's world is another one from packet k on: the pelvis at its origin, or (not anew) anywhere."""
+    x, y, z = packets[k].pelvis()
+    c, s = math.cos(heading), math.sin(heading)
+    shift = (-(c * x - s * y), -(s * x + c * y), 0.0) if anew else (7.0, -4.0, 0.3)
+    for p in packets[k:]:
+        p.move(heading, shift)
+    return packets
+
+
+# Each fault takes the packets (its own copy) and a source of random numbers, and gives what arrives.
+def reorder(packets, chance):
+    for p in packets:
+        if chance.random() < 0.2:
+            p.time_s += chance.uniform(0.0, 0.03)
+    return sorted(packets, key=lambda p: p.time_s)
+
+
+def duplicates(packets, chance):
+    twins = [p.copy() for p in packets if chance.random() < 0.3]
+    for p in twins:
+        p.time_s += chance.uniform(0.0, 0.2)
+    return sorted(packets + twins, key=lambda p: p.time_s)
+
+
+def loss(packets, chance):
+    kept, losing = [], False
+    for p in packets:  # bursts of 12 samples on average
+        losing = chance.random() < (1 - 1 / 12 if losing else 0.3 / 0.7 / 12)
+        if not losing:
+            kept.append(p)
+    return kept
+
+
+def reset(packets, chance):
+    return moved_from(packets, after(packets, chance.uniform(0.3, 0.8)), chance.uniform(-3, 3), False)
+
+
+def three_resets(packets, chance):
+    for moment in sorted(chance.uniform(0.2, 0.9) for _ in range(3)):
+        packets = moved_from(packets, after(packets, moment), chance.uniform(-3, 3), chance.random() < 0.5)
+    return packets
+
+
+def restart(packets, chance, silence_s=1.5):
+    """MVN is started anew while the wearer waits: counter, time code and world begin anew."""
+    k = after(packets, chance.uniform(0.3, 0.8))
+    packets = moved_from(packets, k, chance.uniform(-3, 3), True)
+    counter = packets[k].counter
+    for p in packets[k:]:
+        p.counter -= counter
+        p.time_code += 5000000
+        p.time_s += silence_s
+    return packets
+
+
+def silence(packets, chance, length_s=2.0):
+    k = after(packets, chance.uniform(0.3, 0.8))
+    return [p for p in packets if not packets[k].time_s <= p.time_s < packets[k].time_s + length_s]
+
+
+def pause(packets, chance):
+    """The sender holds, counter and all, while the wearer stands; then it goes on."""
+    k = after(packets, chance.uniform(0.3, 0.8))
+    for p in packets[k:]:
+        p.time_s += 120.0
+        p.time_code += 120000
+    return packets
+
+
+def other_sender(packets, chance, character=0):
+    """Another suit at the same port, of another wearer elsewhere, from its own address."""
+    strange = [p.copy() for p in packets[2000:]]
+    first, offset = strange[0].time_s, packets[0].time_s + 20.0
+    for p in strange:
+        p.time_s += offset - first
+        p.move(1.0, (5.0, 5.0, 0.0))
+        p.data[29] ^= 0x01  # last byte of the source address
+        p.data[p.at + 16] = character
+    return sorted(packets + [p for p in strange if p.time_s < packets[-1].time_s], key=lambda p: p.time_s)
+
+
+def other_character(packets, chance):
+    return other_sender(packets, chance, character=1)
+
+
+FAULTS = {
+    # name: (fault, whether nothing of what the map is made of is lost)
+    "reorder": (reorder, True),
+    "duplicates": (duplicates, True),
+    "loss": (loss, False),
+    "silence": (silence, False),
+    "pause": (pause, True),
+    "reset": (reset, True),
+    "three_resets": (three_resets, True),
+    "restart": (restart, True),
+    "other_sender": (other_sender, True),
+    "other_character": (other_character, True),
+}
+
+
+def build(kinemap, recording, out):
+    subprocess.run([kinemap, "build", str(recording), "--out", str(out)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return json.loads((out / "map.json").read_text())["objects"]
+
+
+def middle(o):
+    corners = o.get("corners")
+    return [sum(c[i] for c in corners) / 4 for i in range(3)] if corners else o["pose"]["position"]
+
+
+def compare(clean, map_):
+    """Lost and false objects, the largest difference of a size, the largest of a place; m."""
+    left, lost, size, place = list(map_), [], 0.0, 0.0
+    for o in clean:
+        near = [(math.dist(middle(o), middle(x)), n) for n, x in enumerate(left) if x["type"] == o["type"]]
+        if not near or min(near)[0] > NEAR_M:
+            lost.append(f"{o['type']} {o['id']}")
+            continue
+        distance, n = min(near)
+        twin = left.pop(n)
+        place = max(place, distance)
+        for a, b in zip(o.get("size", []), twin.get("size", [])):
+            size = max(size, abs(a - b))
+    return lost, [f"{o['type']} {o['id']}" for o in left], size, place
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("kinemap")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[3])
+    parser.add_argument("--only", choices=FAULTS)
+    arguments = parser.parse_args()
+    failures = 0
+    for seed in arguments.seeds:
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            simulate = ["sim", "--seed", str(seed), "--rooms", "1", "--drift", "good", "--packet-loss", "0", "--out", name]
+            subprocess.run([arguments.kinemap, *simulate], check=True, stdout=subprocess.DEVNULL)
+            packets = read_pcap(folder / "session.pcap")
+            clean = build(arguments.kinemap, folder / "session.pcap", folder / "clean")
+            print(f"seed {seed}: {len(clean)} objects, {packets[-1].time_s - packets[0].time_s:.0f} s", flush=True)
+            for fault, (apply, whole) in FAULTS.items():
+                if arguments.only and fault != arguments.only:
+                    continue
+                disturbed = apply([p.copy() for p in packets], random.Random(f"{seed} {fault}"))
+                write_pcap(folder / "disturbed.pcap", disturbed)
+                map_ = build(arguments.kinemap, folder / "disturbed.pcap", folder / fault)
+                lost, false, size, place = compare(clean, map_)
+                wrong = bool(lost or false or (whole and size > SIZE_M))
+                failures += wrong
+                print(
+                    f"  {fault}: {len(lost)} lost, {len(false)} false, sizes within {100 * size:.1f} cm, places within {100 * place:.1f} cm"
+                    + (f"   WRONG: lost {lost}, false {false}" if wrong else ""),
+                    flush=True,
+                )
+    print(f"{failures} of the maps are wrong" if failures else "all maps are right")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -12,9 +12,8 @@ package() {
   shift 2
   cmake -S "$source" -B "$source/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release "${configure[@]}" >/dev/null
   cmake --build "$source/build/release" --parallel "${KINEMAP_JOBS:-2}" --target kinemapd kinemap kinemap_pages kinemap_changelog >&2
-  cpack --config "$source/build/release/CPackConfig.cmake" -B "$to" "$@" >&2
+  cpack --config "$source/build/release/CPackConfig.cmake" -B "$to" "$@" | tee /dev/stderr | sed -n 's/^CPack: - package: \(.*\) generated\.$/\1/p'
   rm -rf "$to/_CPack_Packages"
-  ls "$to"/kinemap_*.deb
 }
 
 check() {

@@ -18,7 +18,15 @@ log=$PWD/build/$preset/test.log
 code=0
 ctest --preset "$preset" --parallel "$jobs" --output-junit "$results" --output-log "$log" \
   --test-output-size-passed 10000000 --test-output-size-failed 10000000 || code=$?
-python3 - "$results" <<'PYTHON'
+# The package on a system of its own, where that can be had.
+system_log=$PWD/build/system-test.log
+system_code=77
+if [[ $preset == release ]]; then
+  system_code=0
+  tools/test-system.sh 2>&1 | tee "$system_log" || system_code=$?
+  ((system_code == 0 || system_code == 77)) || code=1
+fi
+python3 - "$results" "$system_code" "$system_log" <<'PYTHON'
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -46,6 +54,13 @@ for case in ElementTree.parse(sys.argv[1]).getroot().iter("testcase"):
     passed += int(cases.group(1)) - n_bad - n_skipped
     failed += n_bad
     skipped += n_skipped
+if sys.argv[2] == "77":
+    skipped += 1
+else:
+    with open(sys.argv[3], encoding="utf-8") as log:
+        steps = re.findall(r"^(ok|FAILED) ", log.read(), re.MULTILINE)
+    passed += steps.count("ok")
+    failed += max(steps.count("FAILED"), int(sys.argv[2] != "0"))
 print(f"{passed} passed, {failed} failed, {skipped} skipped")
 PYTHON
 exit "$code"

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/landmarks/geometry.hpp"
-
 namespace kinemap {
 namespace {
 
@@ -51,6 +49,20 @@ std::vector<std::size_t> find_corners(std::span<const Eigen::Vector2d> points, d
     if (maximum) corners.push_back(i);
   }
   return corners;
+}
+
+IndexRange without_way(std::span<const Eigen::Vector2d> points, const LandmarkConfig& config) {
+  constexpr double kReach = 0.3;  // m
+  IndexRange kept{0, points.size()};
+  for (const std::size_t corner : find_corners(points, config.corner_window_m, config.corner_angle_rad)) {
+    const bool early = corner < points.size() / 2;
+    if ((points[corner] - (early ? points.front() : points.back())).norm() > kReach) continue;
+    if (early)
+      kept.begin = corner;
+    else
+      kept.end = std::min(kept.end, corner + 1);
+  }
+  return kept;
 }
 
 Eigen::Vector2d fourth_corner(const Eigen::Vector2d& corner, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

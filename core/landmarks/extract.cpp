@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/landmarks/corners.hpp"
 #include "core/landmarks/geometry.hpp"
 #include "core/landmarks/sides.hpp"
 #include "core/landmarks/unbend.hpp"
@@ -24,6 +25,7 @@ constexpr double kHighestEdge = 1.1;    // m over the floor, of a table
 constexpr int kDeepest = 3;             // leftovers of leftovers
 constexpr double kMostOfIt = 0.75;      // of the contacts lie on sides where sides were drawn
 constexpr double kLongestPart = 2.5;    // m: longer is a wall, whatever else the hand did
+constexpr double kNarrow = 0.3;         // m: of open rectangles, so little may be the hand's way to a side and from it
 constexpr double kSecondChoice = 0.8;   // part of the trace that the surface that holds less of it must still hold
 
 struct Attempt {
@@ -79,11 +81,13 @@ double contour_misfit(std::span<const Eigen::Vector2d> flat, const RectangleFit&
   return sum / static_cast<double>(flat.size());
 }
 
+double shorter_side(const RectangleFit& fit) { return std::min(fit.size[0], fit.size[1]); }
+
 std::vector<Eigen::Vector2d> from_above(std::span<const TracePoint> points, const Surface& surface) {
   return in_plane(points, surface, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
 }
 
-Attempt table(std::span<const TracePoint> bent, const Surface& surface, double floor_z, const LandmarkConfig& config) {
+Attempt table(std::span<const TracePoint> bent, Surface surface, double floor_z, const LandmarkConfig& config) {
   const double height = surface.offset - floor_z;
   if (height < config.table_min_height_m || height > config.table_max_height_m)
     return {std::nullopt, "a level surface, but not at the height of a table"};
@@ -93,7 +97,21 @@ Attempt table(std::span<const TracePoint> bent, const Surface& surface, double f
     return fit ? contour_misfit(flat, *fit) : HUGE_VAL;
   });
   const auto points = unbent(bent, rate);
-  const auto fit = fit_rectangle(from_above(points, surface), config);
+  auto fit = fit_rectangle(from_above(points, surface), config);
+  if (fit && shorter_side(*fit) < kNarrow) {
+    Surface drawn = surface;
+    const IndexRange kept = without_way(from_above(points, surface), config);
+    drawn.members.assign(surface.members.begin() + static_cast<std::ptrdiff_t>(kept.begin),
+                         surface.members.begin() + static_cast<std::ptrdiff_t>(kept.end));
+    const auto flat = from_above(points, drawn);
+    const auto other = fit_rectangle(flat, config);
+    if (other && shorter_side(*other) >= kNarrow && contour_misfit(flat, *other) < contour_misfit(flat, *fit)) {
+      surface = std::move(drawn);
+      fit = other;
+    } else if (!fit->closed) {
+      return {std::nullopt, "a level line with the hand's way to it and from it: one edge of a table, or a wall"};
+    }
+  }
   if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
   if (wearer_inside(points, surface, *fit)) return {std::nullopt, "a level contour round the wearer, no table", true};
   Observation seen;

@@ -47,6 +47,32 @@ TEST(TraceResolver, TwoEdgesInTwoGesturesAreOneTable) {
   EXPECT_TRUE(map->unresolved.empty()) << map->unresolved[0].reason;
 }
 
+// The hand comes to the edge from the wearer and goes back: two short sides that nobody drew.
+const Eigen::Vector3d kWay(0.0, -0.28, 0.0);
+const std::vector<Eigen::Vector3d> kDesk = test::level_rectangle({2.0, 1.0, 0.74}, 0.0, 1.0, 0.8);
+
+TEST(TraceResolver, OneEdgeAndTheWayOfTheHandIsNoTable) {
+  Wearer wearer;
+  wearer.walk_to(1.3, 0.0);
+  wearer.trace({kDesk[3] + kWay, kDesk[3], kDesk[2], kDesk[2] + kWay}, kStand);
+  const auto map = map_of(wearer);
+  EXPECT_TRUE(map->objects.empty());
+  ASSERT_EQ(map->unresolved.size(), 1u);
+  EXPECT_NE(map->unresolved[0].reason.find("edge"), std::string::npos) << map->unresolved[0].reason;
+}
+
+TEST(TraceResolver, TwoEdgesWithTheWayOfTheHandBetweenThemAreOneTable) {
+  Wearer wearer;
+  wearer.walk_to(1.3, 0.0);
+  wearer.trace({kDesk[3] + kWay, kDesk[3], kDesk[2], kDesk[2] + kWay}, kStand);
+  wearer.trace({kDesk[2], kDesk[1]}, kStand);
+  const auto map = map_of(wearer);
+  ASSERT_EQ(map->objects.size(), 1u);
+  EXPECT_EQ(map->objects[0].type, ObjectType::Table);
+  EXPECT_NEAR((*map->objects[0].size)[0], 1.0, 0.03);
+  EXPECT_NEAR((*map->objects[0].size)[1], 0.8, 0.03);
+}
+
 TEST(TraceResolver, AScreenInterruptedHalfWay) {
   const auto c = test::upright_rectangle({2.0, 2.0, 1.4}, -1.5707963, 0.9, 0.5);
   Wearer wearer;

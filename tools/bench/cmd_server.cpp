@@ -25,6 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int kTurns = 4;
+
 struct Options {
   std::string recording;
   double seconds = 60.0;
@@ -168,7 +170,7 @@ std::unique_ptr<Server> open_server(Sources sources) {
 
 cli::DaemonAddress address_of(const Server& server) { return {{"127.0.0.1", server.port()}, "", ""}; }
 
-/// Half of the idle time before the clients come and half after, so that a drift of the machine does not count.
+/// Without and with clients by turns, so that a drift of the machine does not count.
 Result<Figures> measure(const Session& session, const Options& options) {
   Figures figures;
   for (auto* list : {&figures.idle_us, &figures.busy_us})
@@ -176,31 +178,33 @@ Result<Figures> measure(const Session& session, const Options& options) {
   Wearer wearer(session, options);
   const auto server = open_server(wearer.sources());
   if (!server) return Error{"no port for the server"};
-  const auto rest = [&] {
+  for (int turn = 0; turn < kTurns; ++turn) {
     std::this_thread::sleep_for(std::chrono::seconds(2));
     wearer.measure(&figures.idle_us);
-    std::this_thread::sleep_for(duration_of(options.seconds / 2.0));
+    std::this_thread::sleep_for(duration_of(options.seconds / kTurns));
     wearer.measure(nullptr);
-  };
-  rest();
-  figures.before_mb = resident_mb();
-  {
+    if (turn == 0) figures.before_mb = resident_mb();
+
     const MemoryWatch memory;
     wearer.measure(&figures.busy_us);
-    auto clients = run_clients_apart({.port = server->port(),
-                                      .readers = options.clients - options.sleepers,
-                                      .sleepers = options.sleepers,
-                                      .seconds = options.seconds,
-                                      .epoch_s = wearer.epoch_s()});
+    const auto clients = run_clients_apart({.port = server->port(),
+                                            .readers = options.clients - options.sleepers,
+                                            .sleepers = options.sleepers,
+                                            .seconds = options.seconds / kTurns,
+                                            .epoch_s = wearer.epoch_s()});
     wearer.measure(nullptr);
     if (!clients) return Error{clients.error()};
-    figures.clients = std::move(*clients);
-    figures.most_mb = memory.most_mb();
+    figures.clients.connected = clients->connected;
+    figures.clients.lost += clients->lost;
+    for (const auto& [topic, values] : clients->delivery_ms) {
+      auto& all = figures.clients.delivery_ms[topic];
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    figures.most_mb = std::max(figures.most_mb, memory.most_mb());
   }
   const auto status = cli::http_get(address_of(*server), "/api/v1/status");
   if (!status) return Error{status.error()};
   figures.status = nlohmann::json::parse(*status).at("clients");
-  rest();
   return figures;
 }
 

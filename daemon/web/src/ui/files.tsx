@@ -28,7 +28,7 @@ export function FileList() {
         ))}
       </ul>
       <p class="note">
-        <a href="licenses.txt">Licences</a> of what this page is made with.
+        Programs ask the <a href="api/v1/openapi.json">API</a> (OpenAPI 3.1). <a href="licenses.txt">Licences</a> of what this page is made with.
       </p>
     </>
   );

@@ -4,15 +4,14 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
 
+#include "daemon/append_file.hpp"
 #include "protocol/journal.hpp"
 
 namespace kinemap {
 
 struct JournalStats {
-  std::uint64_t entries = 0;        ///< handed over since the start
+  std::uint64_t entries = 0;        ///< of this daemon's life
   std::uint64_t bytes = 0;          ///< length of the file
   std::uint64_t waiting_bytes = 0;  ///< could not be written yet
   std::uint64_t lost_entries = 0;   ///< given up since too much was waiting
@@ -21,13 +20,10 @@ struct JournalStats {
   bool healthy = true;  ///< false: the disk does not take what it is given; mapping goes on in memory
 };
 
-/// The journal of the session under way, appended to. What the disk refuses (full, gone) waits in memory and is tried
-/// again with the next entry; the mapping never stops for it. One thread.
+/// The journal of the session under way, appended to. The mapping never stops for the disk (AppendFile). One thread.
 class JournalFile {
  public:
-  struct Limits {
-    std::uint64_t min_free_bytes = 0;                       ///< less free space counts as a full disk
-    std::uint64_t max_waiting_bytes = 64ULL * 1024 * 1024;  ///< days of key poses
+  struct Limits : AppendFile::Limits {
     std::chrono::milliseconds sync_every{1000};  ///< key poses of at most this time are lost with the battery
   };
 
@@ -41,22 +37,15 @@ class JournalFile {
   /// system (key poses, which are synced once in `sync_every`); or, with `healthy` false, when it waits in memory.
   void append(const journal::Entry& entry);
 
-  [[nodiscard]] const JournalStats& stats() const { return stats_; }
+  [[nodiscard]] JournalStats stats() const;
 
  private:
-  void write();
   void sync();
-  [[nodiscard]] std::optional<std::string> open();
-  [[nodiscard]] std::optional<std::string> write_all();
-  void report(const std::optional<std::string>& problem);
 
-  std::filesystem::path path_;
-  Limits limits_;
-  int fd_ = -1;
-  std::string waiting_;
-  std::uint64_t waiting_entries_ = 0;
-  bool unsynced_ = false;
+  AppendFile file_;
+  std::chrono::milliseconds sync_every_;
   std::chrono::steady_clock::time_point next_sync_;
+  bool new_;  ///< the header is still to come
   JournalStats stats_;
 };
 

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <utility>
 
+#include "protocol/journal_map.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -124,7 +126,7 @@ void Pipeline::begin_session(const SuitFrame& first, const std::stop_token& stop
     tracker_.resume(resume_->key_pose, kUnseenSpeed * *since_s);
     spdlog::info("journal: the suit's stream goes on after {:.1f} s, and so does the session", *since_s);
   } else if (journal_) {
-    send(journal::SessionStart{journal_->new_id(now), now, KINEMAP_VERSION}, stop);
+    send(journal::SessionStart{journal_->new_id(now), now, KINEMAP_VERSION, journal::kVersion}, stop);
   }
   if (wearer_) send(*wearer_, stop);
 }
@@ -174,15 +176,34 @@ void Pipeline::record(const std::stop_token& stop) {
     const auto ticket = unwritten_.ticket();
     auto entry = unwritten_.pop();
     if (entry) {
+      sessions_written_ += std::holds_alternative<journal::SessionStart>(**entry);
       journal_->append(**entry);
+      note_map();
       journal_stats_.set(journal_->stats());
       push(events_, std::move(*entry), stop);
     } else if (stop.stop_requested()) {
-      return;  // all is written
+      return note_map();  // all is written
     } else {
       unwritten_.wait(ticket);
     }
   }
+}
+
+/// Writes down what the map has become when it has other numbers than before; the solver may still be at the session
+/// before.
+void Pipeline::note_map() {
+  const Published map = published_.get();
+  if (map.session != sessions_written_) return;
+  if (map.objects == noted_.objects && map.rooms == noted_.rooms && map.session == noted_.session) return;
+  noted_ = map;
+  journal_->append(map);
+}
+
+/// Solver thread.
+void Pipeline::publish() {
+  const auto map = mapper_.snapshot();
+  map_.set(map);
+  published_.set({{map->time_s, map->revision, map->objects.size(), map->rooms.size()}, sessions_begun_});
 }
 
 void Pipeline::solve(const std::stop_token& stop) {
@@ -216,16 +237,11 @@ void Pipeline::restore(const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
   for (const auto& entry : stored_) {
     if (stop.stop_requested()) return;
-    if (const auto event = journal::event_of(entry))
-      mapper_.add(*event);
-    else if (const auto* wearer = std::get_if<WearerInfo>(&entry))
-      mapper_.set_wearer(*wearer);
-    else if (std::holds_alternative<journal::StreamSilence>(entry))
-      mapper_.finish();
+    journal::tell(mapper_, entry);
     entries_restored_.fetch_add(1, std::memory_order_relaxed);
   }
   stored_ = {};
-  map_.set(mapper_.snapshot());
+  publish();
   spdlog::info("journal: {} objects and {} key poses are back, after {:.1f} s", map_.get()->objects.size(),
                map_.get()->trajectory.size(),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -237,20 +253,21 @@ void Pipeline::take_entry(const Entry& entry) {
 
 /// Another session: nothing of the one before is known of the rooms that follow. The revisions go on, for the clients.
 void Pipeline::fold(const journal::SessionStart&) {
+  ++sessions_begun_;
   const auto revision = mapper_.snapshot()->revision;
   if (revision == 0) return;
   mapper_ = Mapper(mapper_config_, revision + 1);
-  map_.set(mapper_.snapshot());
+  publish();
 }
 
 void Pipeline::fold(const journal::StreamSilence&) {
   mapper_.finish();
-  map_.set(mapper_.snapshot());
+  publish();
 }
 
 template <class E>
 void Pipeline::fold(const E& event) {
-  if (mapper_.add(event)) map_.set(mapper_.snapshot());
+  if (mapper_.add(event)) publish();
   notify(event);
 }
 

@@ -109,6 +109,10 @@ class Pipeline {
     bool silence = false;                      ///< when set: the suit has fallen silent, and no frame
   };
   using Entry = journal::Entry;
+  /// What the solver has published, and of which session (0: the one that was stored).
+  struct Published : journal::Announced {
+    std::uint64_t session = 0;
+  };
   using Queue = Ring<std::shared_ptr<const Entry>>;  // by pointer: a trace is not copied on the fast thread
 
   void detect(const std::stop_token& stop);
@@ -119,10 +123,13 @@ class Pipeline {
   void take_silence(std::vector<Event>& events, const std::stop_token& stop);
   void send(Entry entry, const std::stop_token& stop);
   void push(Queue& queue, std::shared_ptr<const Entry> entry, const std::stop_token& stop);
+  void note_map();
+  void publish();
   void restore(const std::stop_token& stop);
   void take_entry(const Entry& entry);
   void fold(const journal::SessionStart& start);
   void fold(const journal::StreamMark&) {}
+  void fold(const journal::Announced&) {}
   void fold(const journal::StreamSilence&);
   void fold(const WearerInfo& wearer) { mapper_.set_wearer(wearer); }
   template <class E>
@@ -143,6 +150,7 @@ class Pipeline {
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks
   LatestValue<JournalStats> journal_stats_;         // journal → everyone who asks
   std::atomic<std::uint64_t> entries_restored_{0};  // solver → everyone who asks
+  LatestValue<Published> published_;                // solver → journal
 
   const MapperConfig mapper_config_;
   const std::unique_ptr<SessionJournal> journal_;  // journal thread only, but for new_id()
@@ -158,7 +166,11 @@ class Pipeline {
   double next_mark_s_ = 0.0;
   Durations steps_;
 
-  Mapper mapper_;  // solver thread only
+  std::uint64_t sessions_written_ = 0;  // journal thread only
+  Published noted_;                     // journal thread only
+
+  std::uint64_t sessions_begun_ = 0;  // solver thread only
+  Mapper mapper_;                     // solver thread only
   std::jthread solver_, recorder_, detection_;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/config.hpp"
+#include "daemon/session_files.hpp"
 #include "protocol/journal.hpp"
 
 namespace kinemap {
@@ -19,41 +20,35 @@ struct StoredSession {
   std::uint64_t bytes = 0;              ///< of its journal
 };
 
-struct SessionInfo {
-  std::string id;
-  std::uint64_t bytes = 0;     ///< of all its files
-  std::int64_t changed_s = 0;  ///< last written, seconds since 1970
-};
-
-/// The folder of all sessions: `sessions/ID/journal.kjr` each, `quarantine/` for journals that were damaged. One daemon
-/// at a time.
+/// The daemon's hand on the folder of all sessions: one daemon at a time.
 class SessionStore {
  public:
   /// Creates the folder where it is missing. The Error says what is wrong with it and which key to change.
   static Result<SessionStore> open(const std::filesystem::path& directory);
-  ~SessionStore();
-  SessionStore(SessionStore&& other) noexcept;
-  SessionStore& operator=(SessionStore&&) = delete;
 
-  /// The newest session. A damaged journal is moved to quarantine, and what can be read of it is put in its place; one
-  /// that cannot be read at all stays where it is. All that is said in the log.
-  std::optional<StoredSession> newest();
+  /// The session that was under way last, or the newest. A damaged journal is moved to quarantine, and what can be read
+  /// of it is put in its place; one of an older format is written anew in the current one; one that cannot be read at
+  /// all stays where it is. All that is said in the log.
+  std::optional<StoredSession> last();
+
+  /// This session is under way from now on.
+  void begin(const std::string& id) { lock_.name(id); }
 
   /// A new id for a session that begins now: UTC, "20261122T103303Z".
   [[nodiscard]] std::string new_id(std::int64_t unix_ms) const;
-  [[nodiscard]] std::filesystem::path journal_of(const std::string& id) const;
-  [[nodiscard]] std::vector<SessionInfo> list() const;  ///< oldest first
+  [[nodiscard]] const SessionFiles& files() const { return files_; }
 
   /// Removes the oldest sessions, and the quarantine, beyond the age and the size that are to be kept; never `current`.
   /// The ids removed.
   std::vector<std::string> retain(const Config::Journal& config, const std::string& current, std::int64_t now_s);
 
  private:
-  explicit SessionStore(std::filesystem::path directory, int lock) : directory_(std::move(directory)), lock_(lock) {}
-  [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return directory_ / "sessions" / id; }
+  SessionStore(SessionFiles files, SessionLock lock) : files_(std::move(files)), lock_(std::move(lock)) {}
+  /// Writes the journal anew: mended, in the current format.
+  bool rewrite(const std::string& id, const ReadJournal& read, StoredSession& session) const;
 
-  std::filesystem::path directory_;
-  int lock_ = -1;
+  SessionFiles files_;
+  SessionLock lock_;
 };
 
 }  // namespace kinemap

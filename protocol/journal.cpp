@@ -38,7 +38,8 @@ std::uint32_t get_u32(std::string_view bytes, std::size_t at) {
 
 /// The payload of the record that begins here; nullopt where none does.
 std::optional<std::string_view> payload_at(std::string_view bytes, std::size_t at) {
-  if (bytes.size() - at < kHead || bytes.substr(at, kMarker.size()) != kMarker) return std::nullopt;
+  if (at > bytes.size() || bytes.size() - at < kHead || bytes.substr(at, kMarker.size()) != kMarker)
+    return std::nullopt;
   const std::uint32_t length = get_u32(bytes, at + 4);
   if (length > kLongest || bytes.size() - at - kHead < length) return std::nullopt;
   const auto payload = bytes.substr(at + kHead, length);
@@ -53,17 +54,44 @@ std::size_t next_record(std::string_view bytes, std::size_t from) {
   return bytes.size();
 }
 
-/// The length of the header, or why this is none that can be read.
-Result<std::size_t> check_header(std::string_view bytes, const std::string& path) {
+struct FirstLine {
+  std::uint32_t version = 0;  ///< 0: no first line of a journal
+  std::size_t length = 0;
+};
+
+FirstLine first_line(std::string_view bytes) {
   const auto end = bytes.substr(0, 40).find('\n');
-  int version = 0;
-  if (bytes.starts_with(kName) && end != std::string_view::npos)
-    std::from_chars(bytes.data() + kName.size(), bytes.data() + end, version);
-  if (version > kVersion)
-    return Error{path + ": a journal of format " + std::to_string(version) +
-                 ", of a newer version of Kinemap; this one reads up to format " + std::to_string(kVersion)};
-  if (version < 1) return Error{path + ": no journal of Kinemap; expected \"kinemap-journal 1\" in its first line"};
-  return end + 1;
+  FirstLine line;
+  if (!bytes.starts_with(kName) || end == std::string_view::npos) return line;
+  const char* last = bytes.data() + end;
+  const auto [rest, error] = std::from_chars(bytes.data() + kName.size(), last, line.version);
+  if (error != std::errc() || rest != last || line.version == 0) return {};
+  line.length = end + 1;
+  return line;
+}
+
+/// The format that the first record names, which a flipped bit in the first line cannot change.
+std::optional<std::uint32_t> format_of_first_record(std::string_view bytes) {
+  const auto payload = payload_at(bytes, next_record(bytes, 0));
+  const auto entry = payload ? decode(*payload) : std::nullopt;
+  const auto* start = entry ? std::get_if<SessionStart>(&*entry) : nullptr;
+  if (start == nullptr) return std::nullopt;
+  return start->format.value_or(1);
+}
+
+/// The first line, or why this is nothing that can be read.
+Result<FirstLine> check_first_line(std::string_view bytes, const std::string& path) {
+  const FirstLine line = first_line(bytes);
+  if (line.version >= 1 && line.version <= kVersion) return line;
+  const auto format = format_of_first_record(bytes);
+  if (format && *format <= kVersion) return FirstLine{};
+  const auto newer = std::max(line.version, format.value_or(0));
+  if (newer > kVersion)
+    return Error{path + ": a journal of format " + std::to_string(newer) +
+                 ", of a newer version of Kinemap; this one reads up to format " + std::to_string(kVersion) +
+                 ": use that version, or begin with another journal.directory"};
+  return Error{path + ": no journal of Kinemap; expected \"kinemap-journal " + std::to_string(kVersion) +
+               "\" in its first line"};
 }
 
 }  // namespace
@@ -91,12 +119,23 @@ std::string record(const Entry& entry) {
   return out += payload;
 }
 
+std::string file_of(const std::vector<Entry>& entries) {
+  std::string bytes = header();
+  for (const auto& entry : entries) {
+    const auto* start = std::get_if<SessionStart>(&entry);
+    bytes += start == nullptr ? record(entry)
+                              : record(SessionStart{start->id, start->created_unix_ms, start->software, kVersion});
+  }
+  return bytes;
+}
+
 Result<Contents> read(std::string_view bytes, const std::string& path) {
-  const auto head = check_header(bytes, path);
-  if (!head) return Error{head.error()};
+  const auto line = check_first_line(bytes, path);
+  if (!line) return Error{line.error()};
   Contents contents;
-  contents.sound_bytes = *head;
-  for (std::size_t at = *head; at < bytes.size();) {
+  contents.version = line->version;
+  contents.sound_bytes = line->length;
+  for (std::size_t at = line->length; at < bytes.size();) {
     const auto payload = payload_at(bytes, at);
     auto entry = payload ? decode(*payload) : std::nullopt;
     if (entry) {

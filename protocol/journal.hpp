@@ -22,6 +22,9 @@ struct SessionStart {
   std::string id;                    ///< as the session's folder: UTC, "20261122T103303Z"
   std::int64_t created_unix_ms = 0;  ///< wall clock
   std::string software;              ///< version that began it
+  /// Of the file, once more and under a checksum, so that a damaged first line is known for what it is. Absent in
+  /// format 1.
+  std::optional<std::uint32_t> format;
 };
 
 /// Where the suit's stream was, about once a second: tells, after a crash, whether the stream that comes is still the
@@ -35,18 +38,29 @@ struct StreamMark {
 /// The suit fell silent and the map was optimised to the end.
 struct StreamSilence {};
 
-using Entry = std::variant<SessionStart, StreamMark, StreamSilence, WearerInfo, KeyPose, Trace, Pivot, Sitting>;
+/// What the map had become when this was written; for lists of sessions, nothing is mapped from it. Since format 2.
+struct Announced {
+  double time_s = 0.0;         ///< of the newest event in the map
+  std::uint64_t revision = 0;  ///< of the map
+  std::uint64_t objects = 0;
+  std::uint64_t rooms = 0;
+};
+
+using Entry =
+    std::variant<SessionStart, StreamMark, StreamSilence, WearerInfo, KeyPose, Trace, Pivot, Sitting, Announced>;
 
 Entry entry_of(const Event& event);
 /// nullptr when the entry is no event.
 std::optional<Event> event_of(const Entry& entry);
 
-inline constexpr int kVersion = 1;  ///< of the format
+inline constexpr std::uint32_t kVersion = 2;  ///< of the format
 
-/// The first bytes of a journal, "kinemap-journal 1\n".
+/// The first bytes of a journal, "kinemap-journal 2\n".
 std::string header();
 /// One entry as its record: marker, length, CRC-32, CBOR.
 std::string record(const Entry& entry);
+/// A whole journal in the current format: what older ones are migrated to.
+std::string file_of(const std::vector<Entry>& entries);
 
 /// A place where a journal could not be read.
 struct Damage {
@@ -55,8 +69,9 @@ struct Damage {
 };
 
 struct Contents {
+  std::uint32_t version = 0;  ///< of the format; 0: the first line is damaged, the records tell that it can be read
   std::vector<Entry> entries;
-  std::vector<Damage> damage;     ///< between records that can be read
+  std::vector<Damage> damage;     ///< before and between records that can be read
   std::uint64_t sound_bytes = 0;  ///< length up to the end of the last record that can be read: append here
   std::uint64_t torn_bytes = 0;   ///< after that: a record whose writing was cut short
 };

@@ -18,6 +18,7 @@ void fields(V& v, SessionStart& e) {
   v("id", e.id);
   v("created_unix_ms", e.created_unix_ms);
   v("software", e.software);
+  v("format", e.format);
 }
 template <class V>
 void fields(V& v, StreamMark& e) {
@@ -69,6 +70,14 @@ void fields(V& v, Sitting& e) {
   v("spread", e.spread_m);
 }
 
+template <class V>
+void fields(V& v, Announced& e) {
+  v("time", e.time_s);
+  v("revision", e.revision);
+  v("objects", e.objects);
+  v("rooms", e.rooms);
+}
+
 constexpr const char* name(const SessionStart&) { return "session"; }
 constexpr const char* name(const StreamMark&) { return "mark"; }
 constexpr const char* name(const StreamSilence&) { return "silence"; }
@@ -77,6 +86,7 @@ constexpr const char* name(const KeyPose&) { return "key_pose"; }
 constexpr const char* name(const Trace&) { return "trace"; }
 constexpr const char* name(const Pivot&) { return "pivot"; }
 constexpr const char* name(const Sitting&) { return "sitting"; }
+constexpr const char* name(const Announced&) { return "map"; }
 
 class Writer {
  public:

@@ -122,7 +122,7 @@ TEST_F(JournalTest, ADirectoryThatCannotBeIsAnErrorThatNamesTheKey) {
 TEST_F(JournalTest, ADamagedJournalGoesToQuarantineAndItsRestIsUsed) {
   auto store = SessionStore::open(dir_);
   ASSERT_TRUE(store);
-  const auto path = store->journal_of("20260101T000000Z");
+  const auto path = store->files().journal_of("20260101T000000Z");
   {
     JournalFile file(path, 0, {});
     for (KeyPoseId id = 0; id < 20; ++id) file.append(key_pose(id));
@@ -130,7 +130,7 @@ TEST_F(JournalTest, ADamagedJournalGoesToQuarantineAndItsRestIsUsed) {
   auto bytes = text(path);
   bytes[bytes.size() / 2] ^= 1;
   { std::ofstream(path, std::ios::binary) << bytes; }
-  const auto session = store->newest();
+  const auto session = store->last();
   ASSERT_TRUE(session);
   EXPECT_THAT(session->entries, SizeIs(19));
   EXPECT_EQ(text(dir_ / "quarantine" / "20260101T000000Z.kjr"), bytes);
@@ -143,10 +143,10 @@ TEST_F(JournalTest, ADamagedJournalGoesToQuarantineAndItsRestIsUsed) {
 TEST_F(JournalTest, AJournalOfANewerVersionIsLeftAlone) {
   auto store = SessionStore::open(dir_);
   ASSERT_TRUE(store);
-  const auto path = store->journal_of("20260101T000000Z");
+  const auto path = store->files().journal_of("20260101T000000Z");
   fs::create_directories(path.parent_path());
   { std::ofstream(path) << "kinemap-journal 9\nwhatever"; }
-  EXPECT_FALSE(store->newest());
+  EXPECT_FALSE(store->last());
   EXPECT_EQ(text(path), "kinemap-journal 9\nwhatever");
 }
 
@@ -154,10 +154,10 @@ TEST_F(JournalTest, TheOldestSessionsGoFirstAndTheCurrentOneNever) {
   auto store = SessionStore::open(dir_);
   ASSERT_TRUE(store);
   for (const char* id : {"20260101T000000Z", "20260102T000000Z", "20260103T000000Z"}) {
-    fs::create_directories(store->journal_of(id).parent_path());
-    std::ofstream(store->journal_of(id)) << std::string(600 * 1024, 'x');
+    fs::create_directories(store->files().journal_of(id).parent_path());
+    std::ofstream(store->files().journal_of(id)) << std::string(600 * 1024, 'x');
   }
-  const std::int64_t now = store->list().front().changed_s;
+  const std::int64_t now = store->files().sessions().front().changed_s;
   Config::Journal config;
   EXPECT_TRUE(store->retain(config, "20260103T000000Z", now).empty());
   config.keep_mb = 1.2;
@@ -172,7 +172,7 @@ TEST_F(JournalTest, TwoSessionsOfOneSecondHaveTwoNames) {
   auto store = SessionStore::open(dir_);
   ASSERT_TRUE(store);
   EXPECT_EQ(store->new_id(1795343583000), "20261122T103303Z");
-  fs::create_directories(store->journal_of("20261122T103303Z").parent_path());
+  fs::create_directories(store->files().journal_of("20261122T103303Z").parent_path());
   EXPECT_EQ(store->new_id(1795343583999), "20261122T103303Zb");
 }
 
@@ -246,7 +246,7 @@ TEST_F(PipelineJournal, ARestartGoesOnWithTheSameSession) {
   EXPECT_NEAR((last.T_odom_pelvis.p - second->trajectory.front().T_odom_pelvis.p).norm(), last.time_s, 0.05);
   EXPECT_GT(second->revision, first->revision);
   auto store = SessionStore::open(dir_);
-  EXPECT_THAT(store->list(), SizeIs(1));
+  EXPECT_THAT(store->files().sessions(), SizeIs(1));
 }
 
 TEST_F(PipelineJournal, AnotherStreamBeginsAnotherSession) {
@@ -256,7 +256,7 @@ TEST_F(PipelineJournal, AnotherStreamBeginsAnotherSession) {
   EXPECT_GT(second->revision, first->revision);
   EXPECT_LT(second->trajectory.front().time_s, 0.1);
   auto store = SessionStore::open(dir_);
-  EXPECT_THAT(store->list(), SizeIs(2));
+  EXPECT_THAT(store->files().sessions(), SizeIs(2));
 }
 
 TEST_F(PipelineJournal, TheMapIsBackBeforeTheSuitIs) {

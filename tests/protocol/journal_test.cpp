@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
+#include <map>
+#include <sstream>
 
 #include "protocol/journal_entries.hpp"
 
@@ -40,7 +43,7 @@ Trace trace(KeyPoseId first, std::size_t contacts) {
 
 /// A short session, an entry of every kind in it.
 std::vector<Entry> session() {
-  std::vector<Entry> entries{SessionStart{"20261122T103303Z", 1795343583000, "0.1.0"},
+  std::vector<Entry> entries{SessionStart{"20261122T103303Z", 1795343583000, "0.1.0", kVersion},
                              WearerInfo{"Ada \xC3\x9F", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.71}};
   for (KeyPoseId id = 0; id < 12; ++id) {
     entries.push_back(key_pose(id));
@@ -49,14 +52,9 @@ std::vector<Entry> session() {
   entries.push_back(trace(2, 30));
   entries.push_back(Pivot{20, 26, {0.01, -0.17, 0}, Eigen::Vector3d(1e-4, 2e-4, 1.0 / 3.0).asDiagonal()});
   entries.push_back(Sitting{30, 34, 11, some_pose(3), 0.44, 0.01});
+  entries.push_back(Announced{33.5, 12, 3, 1});
   entries.push_back(StreamSilence{});
   return entries;
-}
-
-std::string file_of(const std::vector<Entry>& entries) {
-  std::string bytes = header();
-  for (const auto& entry : entries) bytes += record(entry);
-  return bytes;
 }
 
 std::vector<std::string> encoded(const std::vector<Entry>& entries) {
@@ -107,8 +105,22 @@ TEST(Journal, AFlippedBitCostsOneEntryAndIsReported) {
   }
 }
 
+TEST(Journal, AFlippedBitInTheFirstLineCostsNothingElse) {
+  const auto bytes = file_of(session());
+  for (std::size_t bit = 0; bit < 8 * header().size(); ++bit) {
+    auto broken = bytes;
+    broken[bit / 8] = static_cast<char>(broken[bit / 8] ^ 1 << bit % 8);
+    const auto contents = read(broken, "j");
+    ASSERT_TRUE(contents) << contents.error();
+    ASSERT_EQ(contents->entries.size(), session().size()) << "bit " << bit;
+  }
+}
+
 TEST(Journal, OfANewerVersionOrOfSomethingElseIsRefused) {
-  EXPECT_THAT(read("kinemap-journal 2\n", "a/journal").error(), HasSubstr("a/journal: a journal of format 2"));
+  EXPECT_THAT(read("kinemap-journal 3\n", "a/journal").error(), HasSubstr("a/journal: a journal of format 3"));
+  const auto newer = "kinemap-journal 3\n" + record(SessionStart{"x", 0, "9.0", 3}) + record(key_pose(0));
+  EXPECT_THAT(read(newer, "a/journal").error(), HasSubstr("this one reads up to format 2"));
+  EXPECT_THAT(read("?" + newer, "a/journal").error(), HasSubstr("format 3"));
   for (const char* text : {"", "kinemap-journal", "kinemap-journal \n", "kinemap-journal -1\n", "PK\x03\x04", "{}"})
     EXPECT_THAT(read(text, "x").error(), HasSubstr("no journal of Kinemap")) << text;
 }
@@ -124,6 +136,29 @@ TEST(Journal, ARecordWithAGoodChecksumAndNonsenseInItIsDamage) {
   EXPECT_FALSE(contents->damage.empty());
   for (const std::string payload : {"", "\xA0", "\xFF", "\xA1\x64type\x01", "\xA1\x64type\x64mark"})
     EXPECT_FALSE(decode(payload)) << ::testing::PrintToString(payload);
+}
+
+/// Whatever versions come: each format that was ever written opens, and is the same session in the current one.
+TEST(Journal, FilesOfEveryFormatOpen) {
+  for (std::uint32_t version = 1; version <= kVersion; ++version) {
+    const auto name = "journal-v" + std::to_string(version) + ".kjr";
+    std::ostringstream bytes;
+    bytes << std::ifstream(KINEMAP_SOURCE_DIR "/tests/data/" + name, std::ios::binary).rdbuf();
+    const auto contents = read(bytes.str(), name);
+    ASSERT_TRUE(contents) << contents.error();
+    EXPECT_EQ(contents->version, version);
+    EXPECT_TRUE(contents->damage.empty());
+    EXPECT_EQ(contents->torn_bytes, 0U);
+    std::map<std::size_t, int> kinds;
+    for (const auto& entry : contents->entries) ++kinds[entry.index()];
+    EXPECT_EQ(kinds[Entry(KeyPose{}).index()], 121) << name;
+    EXPECT_EQ(kinds[Entry(Trace{}).index()], 1) << name;
+    EXPECT_EQ(kinds[Entry(Sitting{}).index()], 2) << name;
+    const auto migrated = read(file_of(contents->entries), name);
+    ASSERT_TRUE(migrated) << migrated.error();
+    EXPECT_EQ(migrated->version, kVersion);
+    EXPECT_EQ(migrated->entries.size(), contents->entries.size());
+  }
 }
 
 TEST(JournalMend, ChangesNothingWhereNothingIsMissing) {

@@ -100,7 +100,7 @@ TEST_F(Cli, HelpTeaches) {
   EXPECT_EQ(kinemap({"--help"}).code, 0);
   EXPECT_NE(kinemap({"--help"}).out.find("kinemap build session/session.pcap --out map"), string::npos);
   for (const char* command :
-       {"sim", "replay", "build", "map", "objects", "export", "status", "watch", "optimize", "eval"}) {
+       {"sim", "replay", "build", "map", "objects", "export", "status", "watch", "sessions", "optimize", "eval"}) {
     const Ran help = kinemap({command, "--help"});
     EXPECT_EQ(help.code, 0) << command;
     EXPECT_NE(help.out.find("Examples:"), string::npos) << command;

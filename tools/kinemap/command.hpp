@@ -23,6 +23,7 @@ void add_export(CLI::App& app, Run& run);
 void add_status(CLI::App& app, Run& run);
 void add_watch(CLI::App& app, Run& run);
 void add_optimize(CLI::App& app, Run& run);
+void add_sessions(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
 void add_shell(CLI::App& app, Run& run);
 

@@ -37,6 +37,9 @@ struct Config {
     double keep_days = 90.0;
     double keep_mb = 8192.0;
     double min_free_mb = 256.0;
+    bool record = false;  ///< the suit's datagrams too
+    double record_file_mb = 64.0;
+    double record_file_min = 30.0;
   } journal;
   struct Log {
     std::string level = "info";  ///< trace, debug, info, warn, error; SIGHUP rereads it

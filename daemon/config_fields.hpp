@@ -283,6 +283,9 @@ void fields(V& v, Config::Journal& c) {
   v.number("keep_days", c.keep_days, Range{"d", 0, 36500});
   v.number("keep_mb", c.keep_mb, Range{"MiB", 0, 1e9});
   v.number("min_free_mb", c.min_free_mb, Range{"MiB", 0, 1e9});
+  v.flag("record", c.record);
+  v.number("record_file_mb", c.record_file_mb, Range{"MiB", 0.01, 4096});
+  v.number("record_file_min", c.record_file_min, Range{"min", 0.1, 1440});
 }
 
 template <class V>

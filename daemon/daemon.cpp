@@ -20,6 +20,7 @@ Result<std::unique_ptr<SessionJournal>> open_journal(const Config::Journal& conf
   const char* state = std::getenv("STATE_DIRECTORY");  // systemd's StateDirectory=
   const std::string directory = !config.directory.empty() ? config.directory : state != nullptr ? state : "";
   if (!directory.empty()) return SessionJournal::open(directory, config);
+  if (config.record) return Error{"journal.record: the suit is recorded beside the journal; set journal.directory too"};
   spdlog::info("journal: none, since journal.directory is not set; a restart begins with an empty map");
   return std::unique_ptr<SessionJournal>();
 }
@@ -29,7 +30,10 @@ Result<std::unique_ptr<SessionJournal>> open_journal(const Config::Journal& conf
 SuitSink Daemon::suit_sink() {
   return {[this](const SuitFrame& frame) { return pipeline_.offer(frame); },
           [this](const WearerInfo& wearer) { return pipeline_.offer(wearer); },
-          [this] { return pipeline_.offer_silence(); }};
+          [this] { return pipeline_.offer_silence(); },
+          [this](std::span<const std::byte> datagram, const std::string& sender) {
+            pipeline_.offer(datagram, sender, config_.suit.port);
+          }};
 }
 
 Sources Daemon::sources() {

@@ -22,6 +22,7 @@ double Intake::now_s() const {
 
 void Intake::take(std::span<const std::byte> datagram, const std::string& sender) {
   const double arrival_s = now_s();
+  if (sink_.on_datagram) sink_.on_datagram(datagram, sender);
   bool any = false;
   assembler_.add(datagram, arrival_s, sender, [&](const SuitFrame& frame) {
     any = true;

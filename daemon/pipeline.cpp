@@ -73,6 +73,10 @@ bool Pipeline::offer(const WearerInfo& wearer) {
   return frames_.push({{}, std::make_shared<const WearerInfo>(wearer), false});
 }
 
+void Pipeline::offer(std::span<const std::byte> datagram, const std::string& sender, std::uint16_t port) {
+  if (journal_ && journal_->recorder() != nullptr) journal_->recorder()->offer(datagram, sender, port);
+}
+
 void Pipeline::ask_for_pulse() {
   pulse_asked_.fetch_add(1, std::memory_order_relaxed);
   frames_.wake();
@@ -81,6 +85,7 @@ void Pipeline::ask_for_pulse() {
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
+  const Recorder* recorder = journal_ ? journal_->recorder() : nullptr;
   return {tracker_stats_.get(),
           tracker_steps_.get(),
           solver_stats_.get(),
@@ -92,7 +97,9 @@ PipelineStats Pipeline::stats() const {
           unwritten_.stats(),
           journal_stats_.get(),
           entries_restored_.load(std::memory_order_relaxed),
-          entries_to_restore_};
+          entries_to_restore_,
+          recorder != nullptr,
+          recorder != nullptr ? recorder->stats() : RecorderStats{}};
 }
 
 void Pipeline::detect(const std::stop_token& stop) {
@@ -194,7 +201,8 @@ void Pipeline::record(const std::stop_token& stop) {
 void Pipeline::note_map() {
   const Published map = published_.get();
   if (map.session != sessions_written_) return;
-  if (map.objects == noted_.objects && map.rooms == noted_.rooms && map.session == noted_.session) return;
+  if (map.session != noted_.session) noted_ = {{}, map.session};
+  if (map.objects == noted_.objects && map.rooms == noted_.rooms) return;
   noted_ = map;
   journal_->append(map);
 }

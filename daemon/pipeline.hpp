@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <variant>
 
@@ -51,6 +53,8 @@ struct PipelineStats {
   JournalStats journal;
   std::uint64_t entries_restored = 0;    ///< of the session that was found at the start
   std::uint64_t entries_to_restore = 0;  ///< so many it has
+  bool has_recorder = false;
+  RecorderStats recorder;
 };
 
 struct RingSizes {
@@ -85,6 +89,9 @@ class Pipeline {
   /// again then.
   bool offer(const SuitFrame& frame);
   bool offer(const WearerInfo& wearer);
+
+  /// A datagram as it came, for the recording; nothing where none is made. Network thread only; never waits.
+  void offer(std::span<const std::byte> datagram, const std::string& sender, std::uint16_t port);
 
   /// The suit has fallen silent: what is open is closed and the map optimised to the end, as at the end of a recording.
   /// Frames may follow all the same.

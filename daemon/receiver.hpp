@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/body.hpp"
@@ -20,6 +21,8 @@ struct SuitSink {
   std::function<bool(const SuitFrame&)> on_frame;
   std::function<bool(const WearerInfo&)> on_wearer;
   std::function<bool()> on_silence;  ///< no frame has come for 3 s; once, until the next frame
+  /// Every datagram as it came, before anything is made of it, with its sender; may be empty.
+  std::function<void(std::span<const std::byte>, const std::string&)> on_datagram{};
 };
 
 /// Plain numbers, copied as one value between threads.

@@ -69,6 +69,13 @@ std::vector<SessionInfo> SessionFiles::quarantines() const {
   return list;
 }
 
+std::uint64_t SessionFiles::bytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& info : sessions()) sum += info.bytes;
+  for (const auto& info : quarantines()) sum += info.bytes;
+  return sum;
+}
+
 std::vector<fs::path> recordings_in(const fs::path& folder) {
   std::vector<fs::path> paths;
   for_each_in(folder, [&](const fs::directory_entry& file) {

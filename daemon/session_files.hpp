@@ -33,6 +33,7 @@ class SessionFiles {
 
   [[nodiscard]] std::vector<SessionInfo> sessions() const;     ///< oldest first
   [[nodiscard]] std::vector<SessionInfo> quarantines() const;  ///< damaged journals, oldest first
+  [[nodiscard]] std::uint64_t bytes() const;                   ///< of all of them
 
  private:
   std::filesystem::path directory_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "daemon/journal_file.hpp"
+#include "daemon/recorder.hpp"
 #include "daemon/session_store.hpp"
 
 namespace kinemap {
@@ -26,15 +27,20 @@ class SessionJournal {
   /// Goes on with the stored session, or begins another one with a SessionStart. One thread.
   void append(const journal::Entry& entry);
   [[nodiscard]] JournalStats stats() const { return file_ ? file_->stats() : JournalStats{}; }
+  /// Null where the suit is not recorded. Its own threads' rules hold.
+  [[nodiscard]] Recorder* recorder() const { return recorder_.get(); }
 
  private:
   SessionJournal(SessionStore store, const Config::Journal& config);
   void begin(const std::string& id, std::uint64_t length);
+  bool make_room(const std::string& current) const;
 
   SessionStore store_;
   Config::Journal config_;
   std::optional<StoredSession> stored_;
+  std::string id_;
   std::unique_ptr<JournalFile> file_;
+  std::unique_ptr<Recorder> recorder_;  // last: ends before what it asks
 };
 
 }  // namespace kinemap

@@ -98,7 +98,7 @@ bool SessionStore::rewrite(const std::string& id, const ReadJournal& read, Store
 }
 
 std::vector<std::string> SessionStore::retain(const Config::Journal& config, const std::string& current,
-                                              std::int64_t now_s) {
+                                              std::int64_t now_s) const {
   struct Old {
     fs::path path;
     SessionInfo info;

@@ -40,7 +40,7 @@ class SessionStore {
 
   /// Removes the oldest sessions, and the quarantine, beyond the age and the size that are to be kept; never `current`.
   /// The ids removed.
-  std::vector<std::string> retain(const Config::Journal& config, const std::string& current, std::int64_t now_s);
+  std::vector<std::string> retain(const Config::Journal& config, const std::string& current, std::int64_t now_s) const;
 
  private:
   SessionStore(SessionFiles files, SessionLock lock) : files_(std::move(files)), lock_(std::move(lock)) {}

@@ -83,6 +83,11 @@ Json rings_json(const PipelineStats& p) {
   return json;
 }
 
+Json recording_json(const RecorderStats& r) {
+  return {{"healthy", r.healthy},     {"files", r.files},     {"bytes", r.bytes},
+          {"datagrams", r.datagrams}, {"dropped", r.dropped}, {"waiting_bytes", r.waiting_bytes}};
+}
+
 /// Nothing where no journal is kept.
 Json journal_json(const PipelineStats& p) {
   const JournalStats& j = p.journal;
@@ -160,6 +165,7 @@ std::string status_text(const Status& status) {
              {"clients", api_json(status.api)},
              {"process", process_json()}});
   if (status.pipeline.has_journal) json["journal"] = journal_json(status.pipeline);
+  if (status.pipeline.has_recorder) json["recording"] = recording_json(status.pipeline.recorder);
   return compact_text(json);
 }
 

@@ -70,22 +70,24 @@ FirstLine first_line(std::string_view bytes) {
   return line;
 }
 
-/// The format that the first record names, which a flipped bit in the first line cannot change.
-std::optional<std::uint32_t> format_of_first_record(std::string_view bytes) {
+/// The first entry that can be read.
+std::optional<Entry> first_entry(std::string_view bytes) {
   const auto payload = payload_at(bytes, next_record(bytes, 0));
-  const auto entry = payload ? decode(*payload) : std::nullopt;
-  const auto* start = entry ? std::get_if<SessionStart>(&*entry) : nullptr;
-  if (start == nullptr) return std::nullopt;
-  return start->format.value_or(1);
+  return payload ? decode(*payload) : std::nullopt;
 }
 
 /// The first line, or why this is nothing that can be read.
 Result<FirstLine> check_first_line(std::string_view bytes, const std::string& path) {
   const FirstLine line = first_line(bytes);
   if (line.version >= 1 && line.version <= kVersion) return line;
-  const auto format = format_of_first_record(bytes);
-  if (format && *format <= kVersion) return FirstLine{};
-  const auto newer = std::max(line.version, format.value_or(0));
+  // A flipped bit in the first line cannot change what the first entry says.
+  const auto entry = first_entry(bytes);
+  const auto* start = entry ? std::get_if<SessionStart>(&*entry) : nullptr;
+  const auto format = start != nullptr ? start->format.value_or(1) : 0;
+  if (start != nullptr && format <= kVersion) return FirstLine{};
+  // A page was lost with both: what can be read is taken for ours.
+  if (entry && start == nullptr && line.version == 0) return FirstLine{};
+  const auto newer = std::max(line.version, format);
   if (newer > kVersion)
     return Error{path + ": a journal of format " + std::to_string(newer) +
                  ", of a newer version of Kinemap; this one reads up to format " + std::to_string(kVersion) +

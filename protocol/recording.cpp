@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "protocol/mvnx.hpp"
@@ -42,33 +43,74 @@ bool is_mxtp(const UdpPacket& packet) {
          std::memcmp(packet.payload.data(), kMagic.data(), kMagic.size()) == 0;
 }
 
-/// Plays a capture into an Assembler.
+/// The files of a directory, or the path itself.
+Result<std::vector<std::string>> files_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return std::vector<std::string>{path};
+  std::vector<std::string> files;
+  for (auto it = fs::directory_iterator(path, error); !error && it != fs::end(it); it.increment(error))
+    if (it->path().extension() == ".pcap") files.push_back(it->path().string());
+  std::sort(files.begin(), files.end());
+  if (files.empty()) return Error{path + ": is a directory without .pcap files"};
+  return files;
+}
+
+double size_of(const std::vector<std::string>& files) {
+  double bytes = 0.0;
+  std::error_code error;
+  for (const auto& file : files) {
+    const auto size = std::filesystem::file_size(file, error);
+    if (!error) bytes += static_cast<double>(size);
+  }
+  return bytes;
+}
+
+/// Plays captures into an Assembler.
 class PcapPlayer {
  public:
   PcapPlayer(const AssemblerConfig& config, const RecordingSink& sink) : assembler_(config), sink_(&sink) {}
 
-  Result<RecordingSummary> play(const std::string& path, PcapReader reader, const Progress& progress) {
-    std::uint64_t reported = 0;
-    for (;;) {
-      auto packet = reader.next();
-      if (!packet) {
-        summary_.warnings.push_back(packet.error() + "; what came before was used");
-        break;
+  Result<RecordingSummary> play(const std::vector<std::string>& files, const Progress& progress) {
+    const double all = std::max(size_of(files), 1.0);
+    double before = 0.0;
+    std::string unreadable;
+    for (const std::string& file : files) {
+      auto reader = PcapReader::open(file);
+      if (!reader) {
+        unreadable = reader.error();
+        summary_.warnings.push_back(unreadable + "; it is left out");
+        continue;
       }
-      if (!*packet) break;
-      take(**packet);
-      if (progress && reader.stats().bytes_read - reported >= kProgressEvery) {
-        reported = reader.stats().bytes_read;
-        progress(std::min(
-            1.0, static_cast<double>(reported) / static_cast<double>(std::max<std::uint64_t>(reader.file_size(), 1))));
-      }
+      ++opened_;
+      play(*reader, [&](double bytes) {
+        if (progress) progress(std::min(1.0, (before + bytes) / all));
+      });
+      before += static_cast<double>(reader->file_size());
     }
+    if (opened_ == 0) return Error{unreadable + "; a .pcap or .mvnx recording is expected"};
     assembler_.flush([this](const SuitFrame& f) { on_frame(f); });
     if (progress) progress(1.0);
-    return finish(path, reader.stats());
+    return finish(files.size() == 1 ? files.front()
+                                    : std::to_string(files.size()) + " recordings, " + files.front() + " …");
   }
 
  private:
+  void play(PcapReader& reader, const std::function<void(double)>& bytes_read) {
+    std::uint64_t reported = 0;
+    for (;;) {
+      auto packet = reader.next();
+      if (!packet) summary_.warnings.push_back(packet.error() + "; what came before was used");
+      if (!packet || !*packet) break;
+      take(**packet);
+      if (reader.stats().bytes_read - reported < kProgressEvery) continue;
+      reported = reader.stats().bytes_read;
+      bytes_read(static_cast<double>(reported));
+    }
+    records_ += reader.stats().records;
+    truncated_ += reader.stats().truncated;
+    fragments_unfinished_ += reader.stats().fragments_unfinished;
+  }
   void take(const UdpPacket& packet) {
     if (!is_mxtp(packet)) return;
     ++mxtp_;
@@ -89,29 +131,29 @@ class PcapPlayer {
     if (sink_->on_frame) sink_->on_frame(frame);
   }
 
-  Result<RecordingSummary> finish(const std::string& path, const PcapStats& pcap) {
+  Result<RecordingSummary> finish(const std::string& path) {
     summary_.format = "pcap";
     summary_.wearer = assembler_.wearer();
     summary_.rate_hz = assembler_.rate_hz();
     summary_.stream = assembler_.stats();
-    if (summary_.stream.frames == 0) return nothing(path, pcap);
+    if (summary_.stream.frames == 0) return nothing(path);
     for (const std::string& refusal : refusals_)
       summary_.warnings.push_back("part of the stream was refused: " + refusal);
-    if (pcap.truncated > 0) {
-      summary_.warnings.push_back(std::to_string(pcap.truncated) +
+    if (truncated_ > 0) {
+      summary_.warnings.push_back(std::to_string(truncated_) +
                                   " packets were cut short by the capture (record with: tcpdump -s 0)");
     }
-    if (pcap.fragments_unfinished > 0) {
-      summary_.warnings.push_back(std::to_string(pcap.fragments_unfinished) + " fragmented datagrams lack a part");
+    if (fragments_unfinished_ > 0) {
+      summary_.warnings.push_back(std::to_string(fragments_unfinished_) + " fragmented datagrams lack a part");
     }
     return std::move(summary_);
   }
-  [[nodiscard]] Error nothing(const std::string& path, const PcapStats& pcap) const {
+  [[nodiscard]] Error nothing(const std::string& path) const {
     std::string why = path + ": no wearer to map: ";
     if (!refusals_.empty()) {
       why += refusals_.back();
     } else if (mxtp_ == 0) {
-      why += std::to_string(pcap.records) + " packets, of which none carries MXTP over UDP";
+      why += std::to_string(records_) + " packets, of which none carries MXTP over UDP";
     } else {
       why += "none of " + std::to_string(mxtp_) + " MXTP datagrams gave a whole body";
       const auto& s = summary_.stream;
@@ -126,7 +168,8 @@ class PcapPlayer {
   const RecordingSink* sink_;
   RecordingSummary summary_;
   std::uint64_t told_ = 0;
-  std::uint64_t mxtp_ = 0;
+  std::uint64_t mxtp_ = 0, records_ = 0, truncated_ = 0, fragments_unfinished_ = 0;
+  std::size_t opened_ = 0;
   std::vector<std::string> refusals_;
 };
 
@@ -134,12 +177,23 @@ class PcapPlayer {
 
 Result<RecordingSummary> read_recording(const std::string& path, const AssemblerConfig& config,
                                         const RecordingSink& sink, const Progress& progress) {
-  const auto head = first_bytes(path);
-  if (!head) return Error{head.error()};
-  if (looks_like_xml(*head)) return read_mvnx(path, config, sink, progress);
-  auto reader = PcapReader::open(path);
-  if (!reader) return Error{reader.error() + "; a .pcap or .mvnx recording is expected"};
-  return PcapPlayer(config, sink).play(path, std::move(*reader), progress);
+  return read_recordings({path}, config, sink, progress);
+}
+
+Result<RecordingSummary> read_recordings(const std::vector<std::string>& paths, const AssemblerConfig& config,
+                                         const RecordingSink& sink, const Progress& progress) {
+  std::vector<std::string> files;
+  for (const std::string& path : paths) {
+    const auto more = files_of(path);
+    if (!more) return Error{more.error()};
+    files.insert(files.end(), more->begin(), more->end());
+  }
+  if (files.size() == 1) {
+    const auto head = first_bytes(files.front());
+    if (!head) return Error{head.error()};
+    if (looks_like_xml(*head)) return read_mvnx(files.front(), config, sink, progress);
+  }
+  return PcapPlayer(config, sink).play(files, progress);
 }
 
 }  // namespace kinemap

@@ -31,9 +31,13 @@ struct RecordingSink {
 };
 
 /// Reads a .pcap or .mvnx to its end (told apart by content, not by name), through the same Assembler as a live stream.
-/// Memory does not grow with the file. An Error names the path and the byte or line; a recording without a mappable
-/// wearer is an Error too.
+/// A directory is all its .pcap files in the order of their names, as kinemapd's recordings are. Memory does not grow
+/// with the file. An Error names the path and the byte or line; a recording without a mappable wearer is an Error too.
 Result<RecordingSummary> read_recording(const std::string& path, const AssemblerConfig& config,
                                         const RecordingSink& sink, const Progress& progress = {});
+/// Several captures (or directories of them) as one, one after the other. What cannot be read of them is left out, with
+/// a warning, as long as one can be read.
+Result<RecordingSummary> read_recordings(const std::vector<std::string>& paths, const AssemblerConfig& config,
+                                         const RecordingSink& sink, const Progress& progress = {});
 
 }  // namespace kinemap

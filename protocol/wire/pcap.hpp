@@ -53,6 +53,14 @@ class PcapReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The first bytes of a classic µs libpcap file of Ethernet frames, in this machine's byte order.
+std::string pcap_file_header();
+/// One UDP datagram as a packet of such a file. `source`: "address:port" of IPv4, or "[address]:port" of IPv6; it goes
+/// to this machine's `port`. Empty when it cannot be one: more than 65,507 bytes (65,527 with IPv6), or a time outside
+/// 0–2³² s.
+std::string pcap_packet(double time_s, const std::string& source, std::uint16_t port,
+                        std::span<const std::byte> payload);
+
 /// Writes a classic µs libpcap file of IPv4/UDP packets over Ethernet (127.0.0.1 → 127.0.0.1:port).
 class PcapWriter {
  public:

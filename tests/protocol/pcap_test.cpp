@@ -334,6 +334,23 @@ TEST_F(Pcap, FullDiskIsTold) {
   EXPECT_THAT(error->message, HasSubstr("No space left"));
 }
 
+TEST_F(Pcap, PacketsOfARecordingKeepTheirSenders) {
+  std::string bytes = pcap_file_header();
+  for (const char* sender : {"192.168.1.7:49152", "[2001:db8::7]:49153", "somebody"})
+    bytes += pcap_packet(1.5, sender, 9763, hello_);
+  EXPECT_EQ(pcap_packet(1.5, "1.2.3.4:5", 9763, std::vector<std::byte>(65508)), "") << "more than UDP can carry";
+  const auto span = std::as_bytes(std::span(bytes));
+  const Read r = read({span.begin(), span.end()});
+  ASSERT_EQ(r.packets.size(), 3U) << r.error;
+  EXPECT_EQ(r.packets[0].source, "192.168.1.7:49152");
+  EXPECT_EQ(r.packets[1].source, "[2001:db8::7]:49153");
+  EXPECT_EQ(r.packets[2].source, "127.0.0.1:0");
+  for (const auto& packet : r.packets) {
+    EXPECT_EQ(packet.payload, hello_);
+    EXPECT_EQ(packet.destination_port, 9763);
+  }
+}
+
 TEST(PcapReal, EveryRecordingIsReadToItsEnd) {
   const std::string data = std::string(KINEMAP_SHARED_DATA) + "/";
   if (!exists(data + "cmu_walk_2.pcap")) GTEST_SKIP() << "no recordings in " << data;

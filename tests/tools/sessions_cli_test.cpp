@@ -74,7 +74,7 @@ TEST_F(Sessions, WhatIsImportedIsListedShownAndExported) {
 
   const Ran exported = sessions({"export", kId, "--out", at("map"), "--journal", at("s.kjr"), "--json"});
   ASSERT_EQ(exported.code, 0) << exported.err;
-  EXPECT_EQ(Json::parse(exported.out)["objects"], 2);
+  EXPECT_EQ(Json::parse(exported.out)["objects"], 3);
   for (const Export& file : exports()) EXPECT_TRUE(fs::exists(at("map") + "/" + file.name)) << file.name;
   ASSERT_EQ(sessions({"import", at("s.kjr")}, "other").code, 0);
   ASSERT_EQ(sessions({"export", kId, "--out", at("map2")}, "other").code, 0);

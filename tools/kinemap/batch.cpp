@@ -35,6 +35,11 @@ void map_events(Mapper& mapper, std::vector<Event>& events, double& map_s) {
 
 Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress,
                               const Observer& observer) {
+  return build_map(std::vector{recording}, config, progress, observer);
+}
+
+Result<BatchResult> build_map(const std::vector<std::string>& recordings, const Config& config,
+                              const Progress& progress, const Observer& observer) {
   Tracker tracker(config.tracker);
   Mapper mapper(config.mapper);
   std::vector<Event> events;
@@ -53,7 +58,7 @@ Result<BatchResult> build_map(const std::string& recording, const Config& config
                            .on_wearer = [&](const WearerInfo& wearer) { mapper.set_wearer(wearer); }};
   const auto summary = [&] {
     const Stopwatch watch(all_s);
-    return read_recording(recording, config.stream, sink, progress);
+    return read_recordings(recordings, config.stream, sink, progress);
   }();
   if (!summary) return Error{summary.error()};
   times.read_s = all_s - times.track_s - times.map_s;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/body.hpp"
 #include "core/map.hpp"
@@ -31,9 +32,11 @@ struct BatchResult {
 /// Called with each frame and the map as it is by then.
 using Observer = std::function<void(const SuitFrame& frame, const MapSnapshot& map)>;
 
-/// A recording to a map: the very pipeline of the daemon (assembler, tracker, mapper), in one thread and without a
-/// clock, so that the same recording and configuration give the same map, byte for byte. The Error names the file and
-/// what is wrong with it.
+/// A recording, or several that follow on each other, to a map: the very pipeline of the daemon (assembler, tracker,
+/// mapper), in one thread and without a clock, so that the same recording and configuration give the same map, byte for
+/// byte. The Error names the file and what is wrong with it.
+Result<BatchResult> build_map(const std::vector<std::string>& recordings, const Config& config,
+                              const Progress& progress = {}, const Observer& observer = {});
 Result<BatchResult> build_map(const std::string& recording, const Config& config, const Progress& progress = {},
                               const Observer& observer = {});
 

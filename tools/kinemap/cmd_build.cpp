@@ -18,7 +18,7 @@ namespace kinemap::cli {
 namespace {
 
 struct Options {
-  std::string input;
+  std::vector<std::string> inputs;
   std::string out;
   std::string config;
   double body_hz = 0.0;  // 0: only at the key poses
@@ -114,7 +114,7 @@ Result<BatchResult> build_files(const Options& options, const Config& config) {
   auto result = [&] {
     ProgressBar bar("build");
     return build_map(
-        options.input, config, [&](double part) { bar.update(part); }, observer);
+        options.inputs, config, [&](double part) { bar.update(part); }, observer);
   }();
   if (!result) return result;
   if (auto error = write_map_files(options.out, *result->map)) return *error;
@@ -156,12 +156,18 @@ void add_build(CLI::App& app, Run& run) {
       app, run, "build", "A recording to a map, as fast as it goes (the daemon's own pipeline, deterministic)",
       "  kinemap build session.pcap --out map          a capture: tcpdump -w session.pcap udp port 9763\n"
       "  kinemap build take-003.mvnx --out map         an export of MVN Analyze\n"
+      "  kinemap build /var/lib/kinemap/sessions/20261122T103303Z --out map     what kinemapd recorded "
+      "(journal.record)\n"
       "  kinemap build session.pcap --out map --json | jq .objects\n"
       "\nWrites DIR/map.json (the objects) and every other file that 'kinemap export --list' names: plan.svg, "
       "scene.glb,\n"
       "floor.pgm, world.sdf, … Files of an earlier build are replaced.",
       options, build);
-  command->add_option("INPUT", options->input, "Recording: .pcap (classic libpcap) or .mvnx, told apart by content")
+  command
+      ->add_option(
+          "INPUT", options->inputs,
+          "Recording: .pcap (classic libpcap) or .mvnx, told apart by content; several .pcap, or a directory of "
+          "them, follow on each other")
       ->required();
   command->add_option("--out", options->out, "Directory for the results, made where missing")
       ->required()

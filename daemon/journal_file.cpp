@@ -36,6 +36,12 @@ void JournalFile::append(const journal::Entry& entry) {
   if (!can_wait(entry) || Clock::now() >= next_sync_) sync();
 }
 
+void JournalFile::retry() {
+  if (file_.healthy()) return;
+  file_.append({});
+  if (file_.healthy()) sync();
+}
+
 void JournalFile::sync() {
   if (!file_.unsynced()) return;
   const auto begin = Clock::now();

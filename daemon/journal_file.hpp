@@ -37,6 +37,9 @@ class JournalFile {
   /// system (key poses, which are synced once in `sync_every`); or, with `healthy` false, when it waits in memory.
   void append(const journal::Entry& entry);
 
+  /// Tries again to write what the disk refused.
+  void retry();
+
   [[nodiscard]] JournalStats stats() const;
 
  private:

@@ -80,6 +80,7 @@ void Pipeline::offer(std::span<const std::byte> datagram, const std::string& sen
 void Pipeline::ask_for_pulse() {
   pulse_asked_.fetch_add(1, std::memory_order_relaxed);
   frames_.wake();
+  unwritten_.wake();  // a disk that was full may have room, and the suit be silent
 }
 
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
@@ -191,6 +192,8 @@ void Pipeline::record(const std::stop_token& stop) {
     } else if (stop.stop_requested()) {
       return note_map();  // all is written
     } else {
+      journal_->retry();
+      journal_stats_.set(journal_->stats());
       unwritten_.wait(ticket);
     }
   }

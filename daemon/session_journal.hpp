@@ -26,6 +26,10 @@ class SessionJournal {
 
   /// Goes on with the stored session, or begins another one with a SessionStart. One thread.
   void append(const journal::Entry& entry);
+  /// Now and then, while there is nothing to append: tries again to write what the disk refused.
+  void retry() {
+    if (file_) file_->retry();
+  }
   [[nodiscard]] JournalStats stats() const { return file_ ? file_->stats() : JournalStats{}; }
   /// Null where the suit is not recorded. Its own threads' rules hold.
   [[nodiscard]] Recorder* recorder() const { return recorder_.get(); }

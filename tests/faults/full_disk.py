@@ -17,22 +17,7 @@ import sys
 import tempfile
 import time
 
-from kill9 import PLACE_M, Daemon, Suit, datagrams
-
-
-def moved(before, after):
-    """Objects of the first map that have no twin within PLACE_M in the second, and the largest distance of those that have."""
-    free, lost, farthest = list(after["objects"]), [], 0.0
-    for o in before["objects"]:
-        def distance(other):
-            return max(abs(a - b) for a, b in zip(o["pose"]["position"], other["pose"]["position"]))
-        twins = sorted((t for t in free if t["type"] == o["type"]), key=distance)
-        if not twins or distance(twins[0]) > PLACE_M:
-            lost.append(f"{o['type']} {o['id']}" + (f" is {distance(twins[0]):.3f} m off" if twins else " is gone"))
-            continue
-        free.remove(twins[0])
-        farthest = max(farthest, distance(twins[0]))
-    return lost + [f"{t['type']} {t['id']} is new" for t in free], farthest
+from kill9 import Daemon, Suit, datagrams, moved
 
 
 class Disk:

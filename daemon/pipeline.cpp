@@ -109,7 +109,7 @@ void Pipeline::detect(const std::stop_token& stop) {
   for (;;) {
     const auto ticket = frames_.ticket();  // before the check for a stop: its wake-up must not fall in between
     if (stop.stop_requested()) return;
-    pulse_.store(pulse_asked_.load(std::memory_order_relaxed), std::memory_order_relaxed);
+    beat();
     auto message = frames_.pop();
     if (!message) {
       frames_.wait(ticket);
@@ -165,14 +165,21 @@ void Pipeline::take_silence(std::vector<Event>& events, const std::stop_token& s
 }
 
 void Pipeline::send(Entry entry, const std::stop_token& stop) {
-  push(journal_ ? unwritten_ : events_, std::make_shared<const Entry>(std::move(entry)), stop);
+  push(*first_queue(), std::make_shared<const Entry>(std::move(entry)), stop);
 }
+
+Pipeline::Queue* Pipeline::first_queue() { return journal_ ? &unwritten_ : &events_; }
+
+void Pipeline::beat() { pulse_.store(pulse_asked_.load(std::memory_order_relaxed), std::memory_order_relaxed); }
 
 void Pipeline::push(Queue& queue, std::shared_ptr<const Entry> entry, const std::stop_token& stop) {
   if (queue.full()) {
     events_held_back_.fetch_add(1, std::memory_order_relaxed);
     // Half an hour behind: how soon the other side's progress is noticed does not matter any more.
-    while (queue.full() && !stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    while (queue.full() && !stop.stop_requested()) {
+      if (&queue == first_queue()) beat();  // waiting for room, not stuck: systemd is not to end us for it
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     if (stop.stop_requested()) return;
   }
   queue.push(entry);

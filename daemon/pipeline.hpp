@@ -129,6 +129,8 @@ class Pipeline {
   void take_frame(SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
   void take_silence(std::vector<Event>& events, const std::stop_token& stop);
   void send(Entry entry, const std::stop_token& stop);
+  Queue* first_queue();  ///< the one that detection writes to
+  void beat();           ///< detection thread only
   void push(Queue& queue, std::shared_ptr<const Entry> entry, const std::stop_token& stop);
   void note_map();
   void publish();

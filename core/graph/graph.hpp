@@ -143,7 +143,8 @@ struct LandmarkPrior {
 };
 
 struct Graph {
-  std::vector<Pose> poses;  ///< T_map_i
+  std::vector<Pose> poses;          ///< T_map_i
+  std::size_t first_free_pose = 0;  ///< those before are constants: they move no more, and have no covariance
   std::vector<Landmark> landmarks;
   std::vector<TouchPoint> touch_points;
 

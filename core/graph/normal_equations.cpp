@@ -14,20 +14,24 @@ using Strided = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>;
 
 std::vector<int> tangent_sizes(const Graph& graph) {
   std::vector<int> sizes(graph.poses.size(), 6);
+  std::fill_n(sizes.begin(), std::min(graph.first_free_pose, sizes.size()), 0);
   for (const Landmark& l : graph.landmarks) sizes.push_back(l.active ? dimension(l.kind) : 0);
   for (const TouchPoint& t : graph.touch_points) sizes.push_back(t.fixed ? 0 : 3);
   return sizes;
 }
 
 /// Position of each variable in a minimum-degree order of the graph of variables (small: whole poses, not scalars).
-std::vector<int> elimination_order(const std::vector<ResidualBlock>& blocks, std::size_t variables) {
+std::vector<int> elimination_order(const std::vector<ResidualBlock>& blocks, const std::vector<int>& sizes) {
+  const std::size_t variables = sizes.size();
+  const auto constant = [&](VariableId v) { return sizes[v] == 0; };
   std::vector<Eigen::Triplet<double, int>> pairs;
   pairs.reserve(6 * blocks.size() + variables);
   for (std::size_t v = 0; v < variables; ++v) pairs.emplace_back(static_cast<int>(v), static_cast<int>(v), 1.0);
   for (const ResidualBlock& block : blocks) {
     for (int a = 0; a < block.count; ++a) {
       for (int b = 0; b < block.count; ++b) {
-        if (a != b) pairs.emplace_back(static_cast<int>(block.variables[a]), static_cast<int>(block.variables[b]), 1.0);
+        if (a == b || constant(block.variables[a]) || constant(block.variables[b])) continue;
+        pairs.emplace_back(static_cast<int>(block.variables[a]), static_cast<int>(block.variables[b]), 1.0);
       }
     }
   }
@@ -62,8 +66,8 @@ class BlockPattern {
     for (const ResidualBlock& block : blocks) {
       for (int a = 0; a < block.count; ++a) {
         for (int b = 0; b < block.count; ++b) {
-          if (start(block.variables[a]) >= start(block.variables[b]))
-            keys.push_back(key(block.variables[a], block.variables[b]));
+          const VariableId row = block.variables[a], col = block.variables[b];
+          if (columns[row].size > 0 && columns[col].size > 0 && start(row) >= start(col)) keys.push_back(key(row, col));
         }
       }
     }
@@ -171,9 +175,9 @@ class Linearised {
 
 std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
   Values values(graph);
-  const ResidualBlocks problem(graph, values, 0);
-  const std::vector<ResidualBlock>& blocks = problem.blocks;
+  const ResidualBlocks problem(graph, values, graph.first_free_pose);
   const std::vector<int> sizes = tangent_sizes(graph);
+  const std::vector<ResidualBlock>& blocks = problem.blocks;
   std::vector<bool> seen(sizes.size(), false);
   for (const ResidualBlock& block : blocks) {
     for (int k = 0; k < block.count; ++k) seen[block.variables[k]] = true;
@@ -183,15 +187,17 @@ std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
   }
 
   NormalEquations out;
-  out.columns = lay_out(sizes, elimination_order(blocks, sizes.size()));
+  out.columns = lay_out(sizes, elimination_order(blocks, sizes));
   BlockPattern pattern(blocks, out.columns);
   out.lower = pattern.allocate();
   Linearised linearised;
   for (const ResidualBlock& block : blocks) {
     if (!linearised.evaluate(block)) return std::nullopt;
     for (int a = 0; a < block.count; ++a) {
+      if (sizes[block.variables[a]] == 0) continue;
       const auto Ja = linearised.jacobian(a, sizes[block.variables[a]]);
       for (int b = 0; b < block.count; ++b) {
+        if (sizes[block.variables[b]] == 0) continue;
         if (pattern.start(block.variables[a]) < pattern.start(block.variables[b])) continue;
         const auto Jb = linearised.jacobian(b, sizes[block.variables[b]]);
         const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> JtJ = Ja.transpose().lazyProduct(Jb);

@@ -68,7 +68,7 @@ void quieten_libraries() {
 
 std::size_t first_free(const Graph& graph, const OptimizerOptions& options) {
   const std::size_t gauge = graph.priors.empty() ? 1 : 0;
-  return std::min(std::max(options.first_free_pose, gauge), graph.poses.size());
+  return std::min(std::max({options.first_free_pose, graph.first_free_pose, gauge}), graph.poses.size());
 }
 
 void fill_problem(const ResidualBlocks& blocks, Values& values, std::size_t first_free_pose, ceres::Manifold& manifold,

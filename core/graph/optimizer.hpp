@@ -13,7 +13,7 @@ struct OptimizerOptions {
   double function_tolerance = 1e-5;
   double initial_trust_region_radius =
       1e12;                         ///< nearly undamped Gauss-Newton; one retry with 1e4 when that is not usable
-  std::size_t first_free_pose = 0;  ///< poses before it are held constant
+  std::size_t first_free_pose = 0;  ///< poses before it are held constant, beside the graph's own
 };
 
 /// What became of a solve. Only a usable one has changed the graph.

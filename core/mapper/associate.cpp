@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "core/mapper/relocate.hpp"
 #include "core/mapper/wall_frame.hpp"
 
 namespace kinemap {
@@ -168,14 +169,18 @@ std::optional<KeyPoseId> last_visit(const MapState& state, std::size_t landmark)
 /// Variance of the way from pose j to pose i along the level unit vector `axis`, m².
 double variance_along(const MapState& state, const graph::Marginals& marginals, KeyPoseId i, KeyPoseId j,
                       const Eigen::Vector3d& axis) {
-  const std::array<graph::Variable, 2> poses{graph::Variable{graph::Variable::Kind::Pose, i},
-                                             graph::Variable{graph::Variable::Kind::Pose, j}};
   if (i == j) return 0.0;
-  const Eigen::MatrixXd joint = marginals.joint(poses);
+  std::vector<graph::Variable> poses;
   Eigen::Matrix<double, 1, 12> h = Eigen::Matrix<double, 1, 12>::Zero();
-  h.segment<3>(0) = axis.transpose() * state.graph.poses[i].q.toRotationMatrix();
-  h.segment<3>(6) = -axis.transpose() * state.graph.poses[j].q.toRotationMatrix();
-  return (h * joint * h.transpose())(0, 0);
+  const auto add = [&](KeyPoseId pose, double sign) {
+    if (pose < state.graph.first_free_pose) return;  // a constant
+    const auto column = static_cast<Eigen::Index>(6 * poses.size());
+    h.segment<3>(column) = sign * axis.transpose() * state.graph.poses[pose].q.toRotationMatrix();
+    poses.push_back({graph::Variable::Kind::Pose, pose});
+  };
+  add(i, 1.0), add(j, -1.0);
+  const auto used = h.leftCols(static_cast<Eigen::Index>(6 * poses.size()));
+  return poses.empty() ? 0.0 : (used * marginals.joint(poses) * used.transpose())(0, 0);
 }
 
 /// Walls that continue each other are told apart by where along them they were touched: squared sigmas, nullopt when
@@ -239,8 +244,10 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
   std::vector<Candidate> out;
   const auto& landmarks = state.graph.landmarks;
   const Landmark& a = landmarks[newcomer];
+  const std::vector<bool> beyond = beyond_break(state);
   for (std::size_t other = 0; other < landmarks.size(); ++other) {
     const Landmark& b = landmarks[other];
+    if (!beyond.empty() && beyond[newcomer] != beyond[other]) continue;
     if (other == newcomer || !b.active || b.kind != a.kind || a.kind == LandmarkKind::Direction) continue;
     const Difference d = difference(state, newcomer, other, config);
     const Eigen::VectorXd e = d.of(a, b);

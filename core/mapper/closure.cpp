@@ -123,6 +123,7 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
 bool LoopCloser::revise(MapState& state) {
   bool any = false;
   for (std::size_t v = 0; v < state.observations.size(); ++v) {
+    if (state.observations[v].key_pose < state.graph.first_free_pose) continue;  // settled
     if (visits_of(state, state.observations[v].landmark).size() < 2) continue;
     MapState trial = state;
     const std::size_t alone = split(trial, v);

@@ -29,7 +29,8 @@ class LoopCloser {
 
   /// Takes back what the optimum contradicts by now: each visit that was merged into an object is given one of its own
   /// for a trial, and keeps it when the map then costs less by more than a closure may cost. What was taken back is
-  /// free to find its place anew. True when something changed; `state` is optimised then.
+  /// free to find its place anew. Visits on the settled part of the way stay. True when something changed; `state` is
+  /// optimised then.
   bool revise(MapState& state);
 
   /// Optimises, then chooses the sides of rectangles anew for the contacts and optimises again while that changes any.

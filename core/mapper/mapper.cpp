@@ -8,8 +8,10 @@
 #include "core/mapper/odometry.hpp"
 #include "core/mapper/pose_covariance.hpp"
 #include "core/mapper/publish.hpp"
+#include "core/mapper/relocate.hpp"
 #include "core/mapper/resolve.hpp"
 #include "core/mapper/rooms.hpp"
+#include "core/mapper/settled.hpp"
 #include "core/mapper/touch.hpp"
 #include "core/mapper/walls.hpp"
 
@@ -92,7 +94,8 @@ class Mapper::Impl {
 
  private:
   static constexpr std::size_t kTouch = 0;
-  static constexpr double kApproach = 2.0;  ///< s that one stands at a table or screen before one traces it
+  static constexpr double kApproach = 2.0;          ///< s that one stands at a table or screen before one traces it
+  static constexpr std::size_t kLeastClosures = 2;  ///< that bear out how a part was laid on the map
   static constexpr std::size_t kTrajectoryLag =
       10;  ///< key poses after which a walk is published without news of objects
 
@@ -117,9 +120,25 @@ class Mapper::Impl {
   }
 
   void associate(std::size_t newcomer) {
-    if (!closer_.resolve(state_, newcomer)) return;
+    const bool closed = closer_.resolve(state_, newcomer);
+    if (!join_parts() && !closed) return;
     closer_.reconsider(state_);
     judge_touch();
+  }
+
+  /// Lays what was seen after a break on the map before it, once that is clear. True when it holds.
+  bool join_parts() {
+    const auto T_map_part = find_relocation(state_);
+    if (!T_map_part) return false;
+    MapState trial = state_;
+    LoopCloser closer = closer_;
+    relocate(trial, *T_map_part);
+    closer.settle(trial, config_.solver.final_iterations);
+    closer.reconsider(trial);
+    if (trial.summary.loop_closures < state_.summary.loop_closures + kLeastClosures) return false;
+    state_ = std::move(trial);
+    closer_ = std::move(closer);
+    return true;
   }
 
   /// Publishes the objects as the graph has them now.
@@ -136,6 +155,7 @@ class Mapper::Impl {
     if (marginals && touched_)
       map->hand =
           describe_hand(touch_, state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
+    if (marginals) state_.graph.first_free_pose = first_unsettled_pose(state_.graph, *marginals);
     publish(std::move(map));
   }
 

@@ -4,7 +4,7 @@
 
 Objects lost and false must be 0, and sizes within 2 cm where the fault carries no information away (`whole`). Exit code 1 when a criterion fails.
 
-usage: suit.py KINEMAP [--seeds N ...] [--only NAME]
+usage: suit.py KINEMAP [--seeds N ...] [--only NAME ...]
 """
 import argparse
 import json
@@ -98,6 +98,17 @@ def after(packets, moment):
     return next(k for k, p in enumerate(packets) if p.type == b"02" and p.time_s >= begin + moment * (end - begin))
 
 
+def waiting(packets, chance):
+    """A moment in which the wearer stands and his right hand rests, as for a calibration."""
+
+    def motion(k):
+        hand = lambda p: struct.unpack_from(">3f", p.data, p.at + 24 + 10 * 32 + 4)
+        return math.dist(hand(packets[k - 90]), hand(packets[k])) + math.dist(hand(packets[k]), hand(packets[k + 90]))
+
+    poses = [k for k in range(200, len(packets) - 200) if all(packets[n].type == b"02" for n in (k - 90, k, k + 90))]
+    return min((poses[int(chance.uniform(0.3, 0.8) * len(poses))] for _ in range(60)), key=motion)
+
+
 def moved_from(packets, k, heading, anew):
     """The suit's world is another one from packet k on: the pelvis at its origin, or (not anew) anywhere."""
     x, y, z = packets[k].pelvis()
@@ -142,9 +153,9 @@ def three_resets(packets, chance):
     return packets
 
 
-def restart(packets, chance, silence_s=1.5):
+def restart(packets, chance, k=None, silence_s=1.5):
     """MVN is started anew while the wearer waits: counter, time code and world begin anew."""
-    k = after(packets, chance.uniform(0.3, 0.8))
+    k = waiting(packets, chance) if k is None else k
     packets = moved_from(packets, k, chance.uniform(-3, 3), True)
     counter = packets[k].counter
     for p in packets[k:]:
@@ -152,6 +163,14 @@ def restart(packets, chance, silence_s=1.5):
         p.time_code += 5000000
         p.time_s += silence_s
     return packets
+
+
+def long_restart(packets, chance):
+    """MVN is started anew, and the wearer does not wait: half a minute of what he does is lost as well."""
+    k = after(packets, chance.uniform(0.4, 0.6))
+    begin = packets[k].time_s
+    tail = [p for p in packets[k:] if p.time_s >= begin + 30.0]
+    return packets[:k] + restart(tail, chance, after(tail, 0.0), 0.0)
 
 
 def silence(packets, chance, length_s=2.0):
@@ -185,17 +204,18 @@ def other_character(packets, chance):
 
 
 FAULTS = {
-    # name: (fault, whether nothing of what the map is made of is lost)
-    "reorder": (reorder, True),
-    "duplicates": (duplicates, True),
-    "loss": (loss, False),
-    "silence": (silence, False),
-    "pause": (pause, True),
-    "reset": (reset, True),
-    "three_resets": (three_resets, True),
-    "restart": (restart, True),
-    "other_sender": (other_sender, True),
-    "other_character": (other_character, True),
+    # name: (fault, whether nothing of what the map is made of is lost, rounds of the session; None: as the seed has it)
+    "reorder": (reorder, True, None),
+    "duplicates": (duplicates, True, None),
+    "loss": (loss, False, None),
+    "silence": (silence, False, None),
+    "pause": (pause, True, None),
+    "reset": (reset, True, None),
+    "three_resets": (three_resets, True, None),
+    "restart": (restart, True, None),
+    "long_restart": (long_restart, False, 6),  # the wearer comes by enough of what is known for the parts to be joined
+    "other_sender": (other_sender, True, None),
+    "other_character": (other_character, True, None),
 }
 
 
@@ -225,28 +245,38 @@ def compare(clean, map_):
     return lost, [f"{o['type']} {o['id']}" for o in left], size, place
 
 
+class Session:
+    """An undisturbed session and its map."""
+
+    def __init__(self, kinemap, folder, seed, rounds):
+        folder.mkdir()
+        longer = ["--rounds", str(rounds)] if rounds else []
+        simulate = ["sim", "--seed", str(seed), "--rooms", "1", "--drift", "good", "--packet-loss", "0", *longer, "--out", str(folder)]
+        subprocess.run([kinemap, *simulate], check=True, stdout=subprocess.DEVNULL)
+        self.packets = read_pcap(folder / "session.pcap")
+        self.map = build(kinemap, folder / "session.pcap", folder / "clean")
+        length = self.packets[-1].time_s - self.packets[0].time_s
+        print(f"seed {seed}: {len(self.map)} objects, {length:.0f} s", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("kinemap")
     parser.add_argument("--seeds", type=int, nargs="+", default=[3])
-    parser.add_argument("--only", choices=FAULTS)
+    parser.add_argument("--only", choices=FAULTS, nargs="+", default=list(FAULTS))
     arguments = parser.parse_args()
     failures = 0
     for seed in arguments.seeds:
         with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            simulate = ["sim", "--seed", str(seed), "--rooms", "1", "--drift", "good", "--packet-loss", "0", "--out", name]
-            subprocess.run([arguments.kinemap, *simulate], check=True, stdout=subprocess.DEVNULL)
-            packets = read_pcap(folder / "session.pcap")
-            clean = build(arguments.kinemap, folder / "session.pcap", folder / "clean")
-            print(f"seed {seed}: {len(clean)} objects, {packets[-1].time_s - packets[0].time_s:.0f} s", flush=True)
-            for fault, (apply, whole) in FAULTS.items():
-                if arguments.only and fault != arguments.only:
-                    continue
-                disturbed = apply([p.copy() for p in packets], random.Random(f"{seed} {fault}"))
-                write_pcap(folder / "disturbed.pcap", disturbed)
+            folder, sessions = pathlib.Path(name), {}
+            for fault in arguments.only:
+                apply, whole, rounds = FAULTS[fault]
+                if rounds not in sessions:
+                    sessions[rounds] = Session(arguments.kinemap, folder / f"session{rounds}", seed, rounds)
+                session = sessions[rounds]
+                write_pcap(folder / "disturbed.pcap", apply([p.copy() for p in session.packets], random.Random(f"{seed} {fault}")))
                 map_ = build(arguments.kinemap, folder / "disturbed.pcap", folder / fault)
-                lost, false, size, place = compare(clean, map_)
+                lost, false, size, place = compare(session.map, map_)
                 wrong = bool(lost or false or (whole and size > SIZE_M))
                 failures += wrong
                 print(

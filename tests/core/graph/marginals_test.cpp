@@ -106,6 +106,21 @@ TEST(Marginals, LeftOutVariablesHaveNoColumns) {
   EXPECT_EQ(marginals->joint(mixed).rows(), 6);
 }
 
+TEST(Marginals, ConstantPosesAreAsGoodAsCertainOnes) {
+  Graph graph = make_scene({.poses = 30}).truth;
+  Graph certain = graph;
+  graph.first_free_pose = 10;
+  for (std::size_t i = 0; i < 10; ++i) certain.priors.push_back({i, certain.poses[i], Matrix6::Identity() * 1e5});
+  const auto actual = Marginals::compute(graph), expected = Marginals::compute(certain);
+  ASSERT_TRUE(actual && expected);
+  const Variable constant{Kind::Pose, 9};
+  EXPECT_EQ(actual->joint(std::span(&constant, 1)).size(), 0);
+  const Variable query[] = {{Kind::Pose, 10}, {Kind::Landmark, Scene::kWallB}, {Kind::Pose, 29}};
+  const MatrixXd a = actual->joint(query), e = expected->joint(query);
+  ASSERT_EQ(a.rows(), e.rows());
+  EXPECT_LT((a - e).cwiseAbs().maxCoeff(), 1e-4 * e.cwiseAbs().maxCoeff());
+}
+
 /// Straight chain of unit steps along x, each with σ = 0.1 m and 0.01 rad, from a certain start.
 Graph straight_chain(std::size_t poses) {
   Graph graph;

@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -88,6 +89,7 @@ def session(arguments, recording, folder, directory, moments=(), disk=None):
     daemon = Daemon(arguments.kinemapd, config)
     restored, _ = daemon.restored()
     daemon.kill()
+    shutil.rmtree(directory)  # the next session needs the room
     return final, restored, wrong
 
 

@@ -2,8 +2,10 @@
 #include "daemon/config.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -31,7 +33,8 @@ class Writer {
   void flag(const char* key, bool value) { json_[key] = value; }
   void choice(const char* key, const std::string& value, std::initializer_list<const char*>) { json_[key] = value; }
   void address(const char* key, const std::string& value) { json_[key] = value; }
-  void directory(const char* key, const std::string& value) { json_[key] = value; }
+  void path(const char* key, const std::string& value) { json_[key] = value; }
+  void list(const char* key, const std::vector<std::string>& value, const ListOf&) { json_[key] = value; }
 
   void at_most(const char*, double, const char*, double) {}
 
@@ -61,8 +64,11 @@ class Lister {
   void address(const char* key, const std::string& value) {
     keys_.push_back({prefix_ + key, "", Json(value).dump(), kAddressAllowed});
   }
-  void directory(const char* key, const std::string& value) {
-    keys_.push_back({prefix_ + key, "", Json(value).dump(), kDirectoryAllowed});
+  void path(const char* key, const std::string& value) {
+    keys_.push_back({prefix_ + key, "", Json(value).dump(), kPathAllowed});
+  }
+  void list(const char* key, const std::vector<std::string>& value, const ListOf& of) {
+    keys_.push_back({prefix_ + key, "", Json(value).dump(), of.allowed});
   }
   void at_most(const char*, double, const char*, double) {}
 
@@ -96,24 +102,49 @@ Result<Json> parse(const std::string& text) {
   }
 }
 
-}  // namespace
-
-Result<Config> config_from_text(const std::string& text, const std::string& path) {
+/// Takes the keys that the text has into `config`.
+std::optional<Error> lay_over(Config& config, const std::string& text, const std::string& path) {
   auto json = parse(text);
   if (!json) return Error{path + ": " + json.error()};
-  Config config;
   ConfigReader reader(*json, "");
   reader.read(config);
   if (reader.error()) return Error{path + ": " + *reader.error()};
+  return std::nullopt;
+}
+
+/// The paths below `prefix` at which two configurations, which have the same keys, differ.
+void add_differences(const Json& a, const Json& b, const std::string& prefix, std::vector<std::string>& keys) {
+  for (const auto& [key, value] : a.items()) {
+    if (value.is_object())
+      add_differences(value, b.at(key), prefix + key + ".", keys);
+    else if (value != b.at(key))
+      keys.push_back(prefix + key);
+  }
+}
+
+}  // namespace
+
+Result<Config> config_from_text(const std::string& text, const std::string& path) {
+  Config config;
+  if (auto error = lay_over(config, text, path)) return std::move(*error);
   return config;
 }
 
 Result<Config> config_from_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (in) text << in.rdbuf();
-  if (!in || in.bad()) return Error{path + ": cannot be read as a configuration file"};
-  return config_from_text(text.str(), path);
+  std::vector<std::filesystem::path> files{path};
+  std::error_code none;  // there need not be a conf.d
+  for (const auto& entry : std::filesystem::directory_iterator(files[0].parent_path() / "conf.d", none))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::sort(files.begin() + 1, files.end());
+  Config config;
+  for (const auto& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    if (in) text << in.rdbuf();
+    if (!in || in.bad()) return Error{file.string() + ": cannot be read as a configuration file"};
+    if (auto error = lay_over(config, text.str(), file.string())) return std::move(*error);
+  }
+  return config;
 }
 
 nlohmann::ordered_json to_json(const Config& config) {
@@ -132,15 +163,8 @@ std::vector<ConfigKey> config_keys() {
 }
 
 std::vector<std::string> changed_keys(const Config& a, const Config& b) {
-  const auto flat_a = to_json(a).flatten();
-  const auto flat_b = to_json(b).flatten();
   std::vector<std::string> keys;
-  for (const auto& [pointer, value] : flat_a.items())
-    if (flat_b.at(pointer) != value) {
-      std::string key = pointer.substr(1);
-      std::replace(key.begin(), key.end(), '/', '.');
-      keys.push_back(key);
-    }
+  add_differences(to_json(a), to_json(b), "", keys);
   return keys;
 }
 

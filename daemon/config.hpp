@@ -21,6 +21,7 @@ struct Config {
     std::string address = "0.0.0.0";
     std::uint16_t port = 9763;
     int receive_buffer_bytes = 4194304;
+    std::vector<std::string> allow = {};  ///< addresses and networks that may send; empty: all
   } suit;
   AssemblerConfig stream;
   TrackerConfig tracker;
@@ -28,8 +29,16 @@ struct Config {
   struct Api {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;
-    double pose_rate_hz = 20.0;  ///< how often the stream pushes the pose
+    std::string auth = "remote";  ///< who must show a token: "remote" (all but this machine), "always", "none"
+    std::string tokens;           ///< file; empty, as the two below: a credential of systemd, if there is one
+    std::string certificate;      ///< file, PEM
+    std::string key;              ///< file, PEM
+    std::vector<std::string> allowed_hosts;    ///< names of this machine beyond those that it knows itself
+    std::vector<std::string> allowed_origins;  ///< pages of other hosts that may open WebSockets
+    double pose_rate_hz = 20.0;                ///< how often the stream pushes the pose
     int max_clients = 64;
+    int max_clients_per_address = 16;
+    double max_requests_per_s = 100.0;          ///< of one address
     std::size_t client_buffer_bytes = 4194304;  ///< a slower client loses messages beyond it, then its connection
   } api;
   struct Journal {
@@ -49,6 +58,7 @@ struct Config {
 /// Reads a config text (JSON with // and /* */ comments). Refuses, never repairs: unknown key, wrong type or range →
 /// the full key path and what is allowed; a syntax error → line and column. `path` is for the message only.
 Result<Config> config_from_text(const std::string& text, const std::string& path);
+/// The file, then over it each conf.d/*.json beside it, by name: what programs write does not touch the file of people.
 Result<Config> config_from_file(const std::string& path);
 /// Every key with its value.
 nlohmann::ordered_json to_json(const Config& config);

@@ -11,7 +11,8 @@
 /// it counts the members).
 ///
 /// A visitor `v` offers: section(key, struct) · number(key, ref, Range) · flag(key, ref) · choice(key, ref, {…}) ·
-/// address(key, ref) · at_most(key a, a, key b, b): a ≤ b.
+/// address(key, ref) · path(key, ref) · list(key, ref, ListOf) ·
+/// at_most(key a, a, key b, b): a ≤ b.
 namespace kinemap {
 
 /// What a number may be; `unit` is for people ("m", "rad", "s", "Hz", "1" for plain numbers).
@@ -21,12 +22,25 @@ struct Range {
   double max;
 };
 
+/// What the texts of a list may be.
+struct ListOf {
+  const char* allowed;
+  bool (*matches)(const std::string& text);
+};
+bool is_address_or_network(const std::string& text);
+bool is_host_name(const std::string& text);
+bool is_origin(const std::string& text);
+inline constexpr ListOf kNetworks{"a list of addresses and networks, as \"192.168.1.0/24\"", is_address_or_network};
+inline constexpr ListOf kHostNames{"a list of host names, without ports", is_host_name};
+inline constexpr ListOf kOrigins{"a list of origins, as \"https://app.foxglove.dev\"", is_origin};
+
 template <class V>
 void fields(V& v, Config::Suit& c) {
   v.choice("transport", c.transport, {"udp", "tcp"});
   v.address("address", c.address);
   v.number("port", c.port, Range{"port", 0, 65535});
   v.number("receive_buffer_bytes", c.receive_buffer_bytes, Range{"B", 65536, 268435456});
+  v.list("allow", c.allow, kNetworks);
 }
 
 template <class V>
@@ -272,14 +286,22 @@ template <class V>
 void fields(V& v, Config::Api& c) {
   v.address("address", c.address);
   v.number("port", c.port, Range{"port", 0, 65535});
+  v.choice("auth", c.auth, {"remote", "always", "none"});
+  v.path("tokens", c.tokens);
+  v.path("certificate", c.certificate);
+  v.path("key", c.key);
+  v.list("allowed_hosts", c.allowed_hosts, kHostNames);
+  v.list("allowed_origins", c.allowed_origins, kOrigins);
   v.number("pose_rate_hz", c.pose_rate_hz, Range{"Hz", 0.1, 240});
   v.number("max_clients", c.max_clients, Range{"1", 1, 10000});
+  v.number("max_clients_per_address", c.max_clients_per_address, Range{"1", 1, 10000});
+  v.number("max_requests_per_s", c.max_requests_per_s, Range{"1/s", 1, 1000000});
   v.number("client_buffer_bytes", c.client_buffer_bytes, Range{"B", 65536, 1073741824});
 }
 
 template <class V>
 void fields(V& v, Config::Journal& c) {
-  v.directory("directory", c.directory);
+  v.path("directory", c.directory);
   v.number("keep_days", c.keep_days, Range{"d", 0, 36500});
   v.number("keep_mb", c.keep_mb, Range{"MiB", 0, 1e9});
   v.number("min_free_mb", c.min_free_mb, Range{"MiB", 0, 1e9});

@@ -4,9 +4,26 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 
+#include "daemon/network.hpp"
+
 namespace kinemap {
+
+bool is_address_or_network(const std::string& text) { return Network::parse(text).has_value(); }
+
+bool is_host_name(const std::string& text) {
+  const auto is = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '_'; };
+  return !text.empty() && std::all_of(text.begin(), text.end(), is);
+}
+
+/// A scheme, a host, perhaps a port; no path, since browsers send none.
+bool is_origin(const std::string& text) {
+  const auto host = text.find("://");
+  if (host == std::string::npos || host == 0 || text.size() == host + 3) return false;
+  return text.find_first_of("/?# \t", host + 3) == std::string::npos;
+}
 
 std::string describe(const Range& range) {
   char text[96];
@@ -56,13 +73,26 @@ void ConfigReader::address(const char* key, std::string& target) {
   target = text;
 }
 
-void ConfigReader::directory(const char* key, std::string& target) {
+void ConfigReader::path(const char* key, std::string& target) {
   const Json* value = find(key);
   if (value == nullptr) return;
   const std::string text = value->is_string() ? value->get<std::string>() : "?";
   if (!text.empty() && !text.starts_with('/'))
-    return fail(path_of(key), std::string("must be ") + kDirectoryAllowed + ", not " + shown(*value));
+    return fail(path_of(key), std::string("must be ") + kPathAllowed + ", not " + shown(*value));
   target = text;
+}
+
+void ConfigReader::list(const char* key, std::vector<std::string>& target, const ListOf& of) {
+  const Json* value = find(key);
+  if (value == nullptr) return;
+  if (!value->is_array()) return fail(path_of(key), std::string("must be ") + of.allowed + ", not " + shown(*value));
+  std::vector<std::string> items;
+  for (const Json& item : *value) {
+    if (!item.is_string() || !of.matches(item.get_ref<const std::string&>()))
+      return fail(path_of(key), shown(item) + " is wrong there; it must be " + of.allowed);
+    items.push_back(item.get<std::string>());
+  }
+  target = std::move(items);
 }
 
 void ConfigReader::at_most(const char* key, double value, const char* bound_key, double bound) {

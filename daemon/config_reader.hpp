@@ -13,7 +13,7 @@
 namespace kinemap {
 
 inline constexpr const char* kAddressAllowed = "an IPv4 or IPv6 address";
-inline constexpr const char* kDirectoryAllowed = "an absolute path, or \"\"";
+inline constexpr const char* kPathAllowed = "an absolute path, or \"\"";
 std::string describe(const Range& range);
 std::string describe(std::initializer_list<const char*> allowed);
 
@@ -63,7 +63,8 @@ class ConfigReader {
   void flag(const char* key, bool& target);
   void choice(const char* key, std::string& target, std::initializer_list<const char*> allowed);
   void address(const char* key, std::string& target);
-  void directory(const char* key, std::string& target);
+  void path(const char* key, std::string& target);
+  void list(const char* key, std::vector<std::string>& target, const ListOf& of);
   void at_most(const char* key, double value, const char* bound_key, double bound);
 
   [[nodiscard]] const std::optional<std::string>& error() const { return error_; }

@@ -12,8 +12,10 @@
 namespace kinemap {
 namespace {
 
-constexpr std::array<std::string_view, 4> kReloadable{"log.level", "api.pose_rate_hz", "api.max_clients",
-                                                      "api.client_buffer_bytes"};
+/// All of api but where it listens.
+bool is_reloadable(const std::string& key) {
+  return key == "log.level" || (key.starts_with("api.") && key != "api.address" && key != "api.port");
+}
 
 /// Null where sessions are not kept.
 Result<std::unique_ptr<SessionJournal>> open_journal(const Config::Journal& config) {
@@ -53,25 +55,32 @@ Started<Daemon> Daemon::start(const Config& config) {
   auto server = Server::open(config.api, daemon->sources(), config.suit, daemon->suit_port());
   if (auto* error = std::get_if<StartError>(&server)) return std::move(*error);
   daemon->server_ = std::get<0>(std::move(server));
-  spdlog::info("ready: suit on {} {} port {}, map at http://{}:{}/", config.suit.transport, config.suit.address,
-               daemon->suit_port(), config.api.address, daemon->api_port());
+  const bool v6 = config.api.address.find(':') != std::string::npos;
+  spdlog::info("ready: suit on {} {} port {}, map at {}://{}:{}/", config.suit.transport, config.suit.address,
+               daemon->suit_port(), daemon->server_->encrypts() ? "https" : "http",
+               v6 ? "[" + config.api.address + "]" : config.api.address, daemon->api_port());
+  if (config.api.auth == "none" && !daemon->server_->loopback_only())
+    spdlog::warn("api: api.auth is none: everybody who reaches port {} can read the map", daemon->api_port());
   return daemon;
 }
 
 void Daemon::reconfigure(const Config& config) {
+  Config::Api api = config.api;
+  api.address = config_.api.address;
+  api.port = config_.api.port;
+  if (const auto error = server_->reconfigure(api)) {
+    spdlog::error("SIGHUP: the configuration stays as it was: {}", error->message);
+    return;
+  }
   for (const auto& key : changed_keys(config_, config)) {
-    const bool now = std::find(kReloadable.begin(), kReloadable.end(), key) != kReloadable.end();
-    if (now)
+    if (is_reloadable(key))
       spdlog::info("SIGHUP: {} has changed", key);
     else
       spdlog::warn("SIGHUP: {} has changed in the file and needs a restart", key);
   }
   spdlog::set_level(spdlog::level::from_str(config.log.level));
-  server_->reconfigure(config.api);
   config_.log = config.log;
-  config_.api.pose_rate_hz = config.api.pose_rate_hz;
-  config_.api.max_clients = config.api.max_clients;
-  config_.api.client_buffer_bytes = config.api.client_buffer_bytes;
+  config_.api = std::move(api);
   spdlog::info("SIGHUP: the configuration was read again");
 }
 

@@ -18,8 +18,8 @@ class Daemon {
  public:
   static Started<Daemon> start(const Config& config);
 
-  /// Takes over what can change in a running daemon (log.level, api.pose_rate_hz, api.max_clients,
-  /// api.client_buffer_bytes) and says which other changes need a restart.
+  /// Takes over what can change in a running daemon (log.level, all of api but address and port), reads tokens and
+  /// certificate again, and says which other changes need a restart.
   void reconfigure(const Config& config);
 
   /// Sign of life of the detection loop, for the watchdog (Pipeline::pulse).

@@ -20,7 +20,7 @@ using foxglove::kChannelCount;
 /// the one before has been sent, so that it always gets the newest.
 class FoxgloveSession : public WebSocketSession, public foxglove::Listener {
  public:
-  FoxgloveSession(beast::tcp_stream stream, WebContext& context, ConnectionSlot slot)
+  FoxgloveSession(NetStream stream, WebContext& context, ConnectionSlot slot)
       : WebSocketSession(std::move(stream), context, std::move(slot)), feed_(context.foxglove) {}
 
   [[nodiscard]] bool wants(Channel channel) const override { return at(channel).id.has_value(); }
@@ -100,7 +100,7 @@ class FoxgloveSession : public WebSocketSession, public foxglove::Listener {
 
   void answer(Outgoing message) {
     // One that is larger than the budget is sent all the same, when nothing else waits.
-    if (!answers_.empty() && answers_bytes_ + message.size() > context().client_buffer_bytes)
+    if (!answers_.empty() && answers_bytes_ + message.size() > context().config.client_buffer_bytes)
       return give_up("slow reader: you ask faster than you read the answers");
     answers_bytes_ += message.size();
     answers_.push_back(std::move(message));
@@ -150,7 +150,7 @@ class FoxgloveSession : public WebSocketSession, public foxglove::Listener {
 
 }  // namespace
 
-void serve_foxglove(beast::tcp_stream stream, http::request<http::string_body> request, const std::string& subprotocol,
+void serve_foxglove(NetStream stream, http::request<http::string_body> request, const std::string& subprotocol,
                     WebContext& context, ConnectionSlot slot) {
   std::make_shared<FoxgloveSession>(std::move(stream), context, std::move(slot))
       ->accept(std::move(request), subprotocol);

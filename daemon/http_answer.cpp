@@ -106,6 +106,8 @@ bool names_tag(std::string_view if_none_match, std::string_view etag) {
 HttpAnswer http_answer(Reply reply, const HttpRequest& request, GzipCache& gzip) {
   HttpAnswer answer{reply.status, {{"Content-Type", reply.content_type}}, std::move(reply.body)};
   if (!reply.allow.empty()) answer.headers.emplace_back("Allow", reply.allow);
+  if (reply.status == 401) answer.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"kinemap\"");
+  if (reply.status == 429 || reply.status == 503) answer.headers.emplace_back("Retry-After", "1");
   if (reply.status != 200) {
     answer.headers.emplace_back("Cache-Control", "no-store");
     return answer;

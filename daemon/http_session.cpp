@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
+#include <iterator>
+#include <list>
 #include <optional>
+#include <utility>
 
+#include "daemon/admission.hpp"
 #include "daemon/foxglove_protocol.hpp"
-#include "daemon/web.hpp"
 
 namespace kinemap {
 namespace {
 
 constexpr std::uint32_t kHeaderLimit = 8192;
 constexpr std::uint64_t kBodyLimit = 16384;  // no request needs a body; what comes is read and ignored
-constexpr std::size_t kTargetLimit = 2048;
-constexpr std::string_view kStreamPath = "/api/v1/stream", kFoxglovePath = "/";
-constexpr std::chrono::seconds kReadTimeout{30}, kWriteTimeout{60};
-
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+constexpr std::chrono::seconds kReadTimeout{30}, kWriteTimeout{60};  // of a connection that was used
 
 /// Why a request could not be read; nullopt when nobody is there to be told.
 std::optional<ApiError> read_error(ErrorCode error) {
@@ -28,32 +28,89 @@ std::optional<ApiError> read_error(ErrorCode error) {
   return std::nullopt;
 }
 
-class HttpSession : public std::enable_shared_from_this<HttpSession> {
+class HttpSession : public std::enable_shared_from_this<HttpSession>, public Waiting {
  public:
   HttpSession(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot)
       : stream_(std::move(socket)), context_(context), slot_(std::move(slot)) {}
+  ~HttpSession() { stop_waiting(); }
 
+  /// The first byte tells TLS from HTTP, which this machine's programs may speak on the same port.
+  void start() {
+    wait();
+    stream_.next_layer().expires_after(context_.limits.request);
+    if (!context_.security.tls) return read();
+    beast::async_detect_ssl(stream_.next_layer(), buffer_, [self = shared_from_this()](ErrorCode error, bool is_tls) {
+      if (error) return self->give_up(error);
+      if (!is_tls) return self->read();
+      self->shake_hands();
+    });
+  }
+
+  [[nodiscard]] const Visitor& visitor() const override { return slot_.visitor(); }
+  void give_way() override {
+    waiting_ = false;  // whoever says so has taken it off the list
+    stream_.next_layer().close();
+  }
+
+ private:
+  void wait() {
+    if (std::exchange(waiting_, true)) return;
+    context_.waiting.push_back(this);
+    place_ = std::prev(context_.waiting.end());
+  }
+  void stop_waiting() {
+    if (std::exchange(waiting_, false)) context_.waiting.erase(place_);
+  }
+
+  void shake_hands() {
+    stream_.encrypt(context_.security.tls);
+    const auto begun = [self = shared_from_this()](ErrorCode error, std::size_t used) {
+      if (error && error != beast::error::timeout) ++self->context_.api.counts().handshakes_failed;
+      if (error) return self->give_up(error);
+      self->buffer_.consume(used);
+      self->read();
+    };
+    stream_.tls().async_handshake(ssl::stream_base::server, buffer_.data(), begun);
+  }
+
+  /// Reads a request, within the time that runs already.
   void read() {
     parser_.emplace();
     parser_->header_limit(kHeaderLimit);
     parser_->body_limit(kBodyLimit);
-    stream_.expires_after(kReadTimeout);
     http::async_read(stream_, buffer_, *parser_,
                      [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
   }
 
- private:
+  void read_next() {
+    wait();
+    stream_.next_layer().expires_after(kReadTimeout);
+    first_ = false;
+    read();
+  }
+
+  /// Nobody is there to be told.
+  void give_up(ErrorCode error) {
+    const bool begun = first_ || (parser_ && parser_->got_some());
+    if (error == beast::error::timeout && begun) ++context_.api.counts().slow_requests_closed;
+  }
+
   void on_read(ErrorCode error) {
+    stop_waiting();
     if (error) {
       const auto problem = read_error(error);
-      if (!problem) return close();
+      if (!problem) {
+        give_up(error);
+        return close();
+      }
       keep_alive_ = false;
       return send(context_.api.refuse(*problem));
     }
     const auto& request = parser_->get();
     keep_alive_ = request.keep_alive();
     head_ = request.method() == http::verb::head;
-    if (const auto problem = refusal(request)) {
+    if (const auto problem = refusal(request, slot_, stream_.encrypted(), context_)) {
+      keep_alive_ = keep_alive_ && problem->status != 503;
       return send(context_.api.refuse(*problem));
     }
     if (beast::websocket::is_upgrade(request)) return upgrade();
@@ -80,49 +137,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     });
   }
 
-  /// What is wrong with a request before its path is looked at.
-  std::optional<ApiError> refusal(const http::request<http::string_body>& request) {
-    const auto host = view(request[http::field::host]);
-    if (context_.api.counts().connections > context_.max_clients) {
-      keep_alive_ = false;
-      ++context_.api.counts().refused;
-      return ApiError{503, "too_many_clients",
-                      "api.max_clients (" + std::to_string(context_.max_clients) + ") connections are open"};
-    }
-    if (!host_allowed(host, context_.loopback_only))
-      return ApiError{403, "forbidden_host",
-                      "this server answers to localhost only; api.address in the configuration opens it"};
-    if (request.target().size() > kTargetLimit)
-      return ApiError{414, "target_too_long", "the request's target is longer than 2 KiB"};
-    if (!beast::websocket::is_upgrade(request)) return std::nullopt;
-    return upgrade_refusal(request, host);
-  }
-
-  static std::string_view path_of(const http::request<http::string_body>& request) {
-    const auto target = view(request.target());
-    return target.substr(0, target.find('?'));
-  }
-
-  static std::optional<ApiError> upgrade_refusal(const http::request<http::string_body>& request,
-                                                 std::string_view host) {
-    const auto path = path_of(request);
-    const auto origin = view(request[http::field::origin]);
-    if (path != kStreamPath && path != kFoxglovePath)
-      return ApiError{.status = 404,
-                      .code = "not_found",
-                      .message = "the WebSocket is at /api/v1/stream, the one for Foxglove's viewers at /",
-                      .nearest = std::string(kStreamPath)};
-    if (!(path == kStreamPath ? origin_allowed(origin, host) : viewer_origin_allowed(origin, host)))
-      return ApiError{403, "forbidden_origin", "pages of other hosts may not open the stream"};
-    if (path == kFoxglovePath && !foxglove::choose_subprotocol(view(request[http::field::sec_websocket_protocol])))
-      return ApiError{400, "bad_subprotocol",
-                      "at / the WebSocket subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1; Kinemap's own "
-                      "stream is at /api/v1/stream"};
-    return std::nullopt;
-  }
-
   void upgrade() {
-    stream_.expires_never();  // the WebSocket has its own time-outs
+    stream_.next_layer().expires_never();  // the WebSocket has its own time-outs
     auto request = parser_->release();
     if (path_of(request) == kStreamPath)
       return serve_stream(std::move(stream_), std::move(request), context_, std::move(slot_));
@@ -150,18 +166,19 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (answer_.status != 304) response->content_length(answer_.body->size());
     if constexpr (!std::is_same_v<Body, http::empty_body>)
       response->body() = {answer_.body->data(), answer_.body->size()};
-    stream_.expires_after(kWriteTimeout);
+    stream_.next_layer().expires_after(kWriteTimeout);
     http::async_write(stream_, *response, [self = shared_from_this(), response](ErrorCode error, std::size_t) {
       if (error || !self->keep_alive_) return self->close();
-      self->read();
+      self->read_next();
     });
   }
 
   /// Says goodbye, then reads off what the peer still sends, so that its last answer is not lost to a reset.
   void close() {
+    stream_.next_layer().expires_after(std::chrono::seconds(2));
+    if (stream_.encrypted()) return stream_.tls().async_shutdown([self = shared_from_this()](ErrorCode) {});
     ErrorCode ignored;
-    stream_.socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
-    stream_.expires_after(std::chrono::seconds(2));
+    stream_.next_layer().socket().shutdown(net::ip::tcp::socket::shutdown_send, ignored);
     drain(16);
   }
   void drain(int reads) {
@@ -172,9 +189,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     });
   }
 
-  beast::tcp_stream stream_;
+  NetStream stream_;
   WebContext& context_;
   ConnectionSlot slot_;
+  bool waiting_ = false;
+  std::list<Waiting*>::iterator place_;  // while it waits
+  bool first_ = true;                    // no request has been answered yet
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   HttpAnswer answer_;  // owns the text while it is being sent
@@ -185,7 +205,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 }  // namespace
 
 void serve_http(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot) {
-  std::make_shared<HttpSession>(std::move(socket), context, std::move(slot))->read();
+  std::make_shared<HttpSession>(std::move(socket), context, std::move(slot))->start();
 }
 
 }  // namespace kinemap

@@ -105,6 +105,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "kinemapd: %s\n", config.error().c_str());
     return static_cast<int>(ExitCode::Config);
   }
+  if (const auto error = arguments.check ? Server::check(config->api) : std::nullopt) {
+    std::fprintf(stderr, "kinemapd: %s\n", error->message.c_str());
+    return static_cast<int>(ExitCode::Config);
+  }
   if (arguments.print) std::printf("%s\n", to_json(*config).dump(2).c_str());
   if (arguments.check && !arguments.print) std::printf("the configuration is right\n");
   if (arguments.print || arguments.check) return 0;

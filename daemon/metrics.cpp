@@ -63,6 +63,7 @@ void write_stream(MetricsText& out, const Status& status) {
   write_kind(out, stream, StreamCounter::Kind::Dropped, "cause");
   out.sample({{"cause", "kernel_buffer_full"}}, status.suit.counts.kernel_drops);
   out.sample({{"cause", "truncated"}}, status.suit.counts.truncated);
+  out.sample({{"cause", "not_allowed"}}, status.suit.counts.not_allowed);
   out.counter("kinemap_frames_lost_total", "Frames that the map did not get, by cause; ring_full is our own fault.");
   write_kind(out, stream, StreamCounter::Kind::LostFrame, "cause");
   out.sample({{"cause", "ring_full"}}, status.pipeline.frames.refused);
@@ -167,6 +168,15 @@ void write_clients(MetricsText& out, const ApiCounts& api) {
               api.messages_skipped);
   out.counter("kinemap_stream_slow_clients_closed_total", "Clients that were too slow for too long.",
               api.slow_clients_closed);
+  out.counter("kinemap_slow_requests_closed_total", "Connections whose handshake or header did not come in time.",
+              api.slow_requests_closed);
+  out.counter("kinemap_connections_gave_way_total", "Connections that asked for nothing when there were too many.",
+              api.gave_way);
+  out.counter("kinemap_handshakes_failed_total", "TLS handshakes that failed.", api.handshakes_failed);
+  out.counter("kinemap_requests_unauthorized_total", "Requests without a token that lets them in.", api.unauthorized);
+  out.counter("kinemap_requests_forbidden_total",
+              "Requests refused for their host, their origin or for being in the clear.", api.forbidden);
+  out.counter("kinemap_requests_throttled_total", "Requests beyond api.max_requests_per_s.", api.throttled);
 }
 
 }  // namespace

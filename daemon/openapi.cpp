@@ -70,8 +70,25 @@ Json responses(const Route& route) {
   else
     out["200"] = {{"description", route.summary}, {"content", content(route.content_type, Json::object())}};
   out["304"] = {{"description", "If-None-Match has the answer's ETag."}};
-  out["default"] = {{"description", "Why there is no answer."}, {"content", error}};
+  const auto refused = [&](const char* status, const char* why) {
+    out[status] = {{"description", why}, {"content", error}};
+  };
+  if (!route.open) refused("401", "A token is wanted, and none or an unknown one was shown.");
+  refused("403", "The Host or the Origin is not one that this server answers to, or the token allows less than this.");
+  refused("429", "Too many requests from this address; Retry-After says for how many seconds.");
+  refused("default", "Why there is no answer.");
   return out;
+}
+
+/// How a token is shown; programs of the daemon's own machine mostly need none (api.auth).
+Json security_schemes() {
+  return {
+      {"token", {{"type", "http"}, {"scheme", "bearer"}, {"description", "Scope read, or admin for what changes."}}},
+      {"stream_token",
+       {{"type", "apiKey"},
+        {"in", "query"},
+        {"name", "token"},
+        {"description", "The same for WebSockets, of which browsers let a page set no header."}}}};
 }
 
 }  // namespace
@@ -81,6 +98,7 @@ std::string openapi_text(const Routes& routes, const std::string& version) {
   for (const Route& route : routes.all()) {
     Json get = {{"summary", route.summary}, {"responses", responses(route)}};
     if (Json list = parameters(route); !list.empty()) get["parameters"] = std::move(list);
+    if (route.open) get["security"] = Json::array();
     paths[route.path] = {{"get", std::move(get)}};
   }
   return compact_text({{"openapi", "3.1.0"},
@@ -90,7 +108,8 @@ std::string openapi_text(const Routes& routes, const std::string& version) {
                          {"description", "A live map of a building, from the motion of who walks through it."},
                          {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
                        {"paths", std::move(paths)},
-                       {"components", {{"schemas", schemas()}}}});
+                       {"security", Json::array({{{"token", Json::array()}}, {{"stream_token", Json::array()}}})},
+                       {"components", {{"schemas", schemas()}, {"securitySchemes", security_schemes()}}}});
 }
 
 }  // namespace kinemap

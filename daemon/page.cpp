@@ -21,17 +21,20 @@ Reply page_reply(const std::string& path) {
 }  // namespace
 
 void add_page_routes(Routes& routes) {
-  routes.add(
-      {.path = "/", .summary = "The live page, for browsers.", .content_type = "text/html", .answer = [](const Call&) {
-         return page_reply("/");
-       }});
+  routes.add({.path = "/",
+              .summary = "The live page, for browsers.",
+              .content_type = "text/html",
+              .open = true,
+              .answer = [](const Call&) { return page_reply("/"); }});
   routes.add({.path = "/assets/{file}",
               .summary = "What the live page consists of, in files named by their content.",
               .content_type = "application/octet-stream",
+              .open = true,
               .answer = [](const Call& call) { return page_reply("/assets/" + std::string(call.id)); }});
   routes.add({.path = "/licenses.txt",
               .summary = "The licences of the libraries in the live page.",
               .content_type = "text/plain",
+              .open = true,
               .answer = [](const Call&) { return page_reply("/licenses.txt"); }});
 }
 

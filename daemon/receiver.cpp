@@ -10,6 +10,17 @@
 #include "daemon/suit_sockets.hpp"
 
 namespace kinemap {
+namespace {
+
+/// The configuration has been checked: each text is one.
+std::vector<Network> networks(const std::vector<std::string>& texts) {
+  std::vector<Network> list;
+  for (const auto& text : texts)
+    if (const auto network = Network::parse(text)) list.push_back(*network);
+  return list;
+}
+
+}  // namespace
 
 class Receiver::Impl {
  public:
@@ -17,23 +28,23 @@ class Receiver::Impl {
   ~Impl() { io_.stop(); }
 
   /// Binds and starts to listen; the thread begins with `run`.
-  ErrorCode bind_udp(const net::ip::address& address, std::uint16_t port, int receive_buffer_bytes) {
+  ErrorCode bind_udp(const net::ip::address& address, const Config::Suit& suit) {
     net::ip::udp::socket socket(io_);
-    const net::ip::udp::endpoint endpoint(address, port);
+    const net::ip::udp::endpoint endpoint(address, suit.port);
     ErrorCode error;
     socket.open(endpoint.protocol(), error);
     if (!error) socket.bind(endpoint, error);
     if (error) return error;
-    set_receive_buffer(socket, receive_buffer_bytes);
+    set_receive_buffer(socket, suit.receive_buffer_bytes);
     port_ = socket.local_endpoint().port();
-    udp_ = std::make_unique<UdpSource>(std::move(socket), intake_);
+    udp_ = std::make_unique<UdpSource>(std::move(socket), intake_, networks(suit.allow));
     udp_->start();
     return {};
   }
 
-  ErrorCode bind_tcp(const net::ip::address& address, std::uint16_t port) {
+  ErrorCode bind_tcp(const net::ip::address& address, const Config::Suit& suit) {
     net::ip::tcp::acceptor acceptor(io_);
-    const net::ip::tcp::endpoint endpoint(address, port);
+    const net::ip::tcp::endpoint endpoint(address, suit.port);
     ErrorCode error;
     acceptor.open(endpoint.protocol(), error);
     if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
@@ -41,7 +52,7 @@ class Receiver::Impl {
     if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
     if (error) return error;
     port_ = acceptor.local_endpoint().port();
-    tcp_ = std::make_unique<TcpSource>(std::move(acceptor), intake_);
+    tcp_ = std::make_unique<TcpSource>(std::move(acceptor), intake_, networks(suit.allow));
     tcp_->start();
     return {};
   }
@@ -80,8 +91,7 @@ Started<Receiver> Receiver::open(const Config::Suit& suit, const AssemblerConfig
   ErrorCode error;
   const auto address = net::ip::make_address(suit.address, error);
   auto impl = std::make_unique<Impl>(stream, std::move(sink));
-  if (!error)
-    error = tcp ? impl->bind_tcp(address, suit.port) : impl->bind_udp(address, suit.port, suit.receive_buffer_bytes);
+  if (!error) error = tcp ? impl->bind_tcp(address, suit) : impl->bind_udp(address, suit);
   if (error) return bind_error(binding, error);
   impl->run();
   return std::unique_ptr<Receiver>(new Receiver(std::move(impl)));

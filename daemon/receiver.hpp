@@ -32,6 +32,7 @@ struct ReceiverCounts {
   double last_frame_s = -1.0;            ///< arrival of the newest whole frame, on the receiver's clock; −1: none yet
   std::uint64_t kernel_drops = 0;        ///< datagrams that the kernel dropped since the socket's buffer was full
   std::uint64_t truncated = 0;           ///< datagrams longer than 64 KiB − 1
+  std::uint64_t not_allowed = 0;         ///< datagrams, and connections, of senders that suit.allow does not name
   std::uint64_t tcp_accepted = 0;        ///< connections ever
   std::uint64_t tcp_refused = 0;         ///< connections beyond the limit
   std::uint64_t tcp_closed_garbage = 0;  ///< closed since the peer did not speak the protocol

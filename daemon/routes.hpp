@@ -33,6 +33,7 @@ struct Route {
   std::vector<ParamSpec> params = {};
   std::string schema = {};        ///< of a JSON answer: its name in protocol/api.schema.json
   std::string content_type = {};  ///< of any other answer
+  bool open = false;              ///< for everybody, without a token
   std::function<Reply(const Call&)> answer;
 };
 

@@ -23,24 +23,17 @@ constexpr std::chrono::milliseconds kPause{100};  // after a failed accept (no f
 
 class Server::Impl {
  public:
-  Impl(const Config::Api& config, Sources sources, const Config::Suit& suit, std::uint16_t suit_port,
+  Impl(const Config::Api& config, Security security, Sources sources, const Config::Suit& suit, std::uint16_t suit_port,
        const ServerLimits& limits)
       : api_(std::move(sources), suit, suit_port),
         hub_(api_, config.pose_rate_hz),
         foxglove_(api_),
-        context_{api_,
-                 hub_,
-                 foxglove_,
-                 workshop_,
-                 static_cast<std::size_t>(config.max_clients),
-                 config.client_buffer_bytes,
-                 limits.stall,
-                 false} {}
+        context_{api_,   hub_,   foxglove_, workshop_, std::move(security), Visitors(config.max_requests_per_s),
+                 config, limits, {}} {}
   ~Impl() { io_.stop(); }
 
   ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
     const net::ip::tcp::endpoint endpoint(address, port);
-    context_.loopback_only = address.is_loopback();
     ErrorCode error;
     acceptor_.open(endpoint.protocol(), error);
     if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);
@@ -53,21 +46,26 @@ class Server::Impl {
 
   void run() {
     port_ = acceptor_.local_endpoint().port();
+    loopback_only_ = acceptor_.local_endpoint().address().is_loopback();
+    encrypts_ = context_.security.tls != nullptr;
     accept();
     tick();
     thread_ = std::jthread([this] { io_.run(); });
     pthread_setname_np(thread_.native_handle(), "api");
   }
 
-  void reconfigure(const Config::Api& config) {
-    net::post(io_, [this, config] {
+  void reconfigure(const Config::Api& config, Security security) {
+    net::post(io_, [this, config, security = std::move(security)]() mutable {
       hub_.set_pose_rate(config.pose_rate_hz);
-      context_.max_clients = static_cast<std::size_t>(config.max_clients);
-      context_.client_buffer_bytes = config.client_buffer_bytes;
+      context_.security = std::move(security);
+      context_.visitors.set_rate(config.max_requests_per_s);
+      context_.config = config;
     });
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] bool encrypts() const { return encrypts_; }
+  [[nodiscard]] bool loopback_only() const { return loopback_only_; }
 
  private:
   void accept() {
@@ -82,15 +80,40 @@ class Server::Impl {
   void welcome(net::ip::tcp::socket socket) {
     auto& counts = api_.counts();
     ++counts.accepted;
-    // Beyond max_clients a client is told so; beyond twice as many there is no time for that.
-    if (counts.connections >= 2 * context_.max_clients) {
+    ErrorCode ignored;
+    const auto peer = parse_address(socket.remote_endpoint(ignored).address().to_string());
+    if (ignored || !peer) return;  // gone again
+    auto visitor = context_.visitors.of(*peer, Visitors::Clock::now());
+    const bool full = context_.crowded(counts.connections + 1) && !make_room(*visitor);
+    const bool surplus = full || context_.crowded(*visitor, visitor->connections + 1);
+    // Who is too much is told so; beyond twice the limits there is no time for that.
+    if ((full && context_.crowded(counts.connections + 1, 2)) ||
+        context_.crowded(*visitor, visitor->connections + 1, 2)) {
       ++counts.refused;
       return;
     }
-    ErrorCode ignored;
     socket.set_option(net::ip::tcp::no_delay(true), ignored);
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &kUserTimeoutMs, sizeof kUserTimeoutMs);
-    serve_http(std::move(socket), context_, ConnectionSlot(counts));
+    serve_http(std::move(socket), context_, ConnectionSlot(counts, std::move(visitor), surplus));
+  }
+
+  /// A connection that asks for nothing gives way to one of the same address, or of one that has fewer: the oldest of
+  /// the address that has the most. So who holds many without using them does not keep others out. False when there is
+  /// none.
+  bool make_room(const Visitor& newcomer) {
+    auto& waiting = context_.waiting;
+    const auto fewer = [](const Waiting* a, const Waiting* b) {
+      return a->visitor().connections < b->visitor().connections;
+    };
+    const auto found = std::max_element(waiting.begin(), waiting.end(), fewer);
+    if (found == waiting.end()) return false;
+    const Visitor& most = (*found)->visitor();
+    if (&most != &newcomer && most.connections <= newcomer.connections) return false;
+    ++context_.api.counts().gave_way;
+    Waiting* const one = *found;
+    waiting.erase(found);
+    one->give_way();
+    return true;
   }
 
   void pause(ErrorCode error) {
@@ -122,12 +145,15 @@ class Server::Impl {
   net::ip::tcp::acceptor acceptor_{io_};
   net::steady_timer ticker_{io_}, pause_{io_};
   std::uint16_t port_ = 0;
+  bool encrypts_ = false, loopback_only_ = false;
   std::jthread thread_;  // last: joined first
 };
 
 Started<Server> Server::open(const Config::Api& config, Sources sources, const Config::Suit& suit,
                              std::uint16_t suit_port, const ServerLimits& limits) {
-  auto impl = std::make_unique<Impl>(config, std::move(sources), suit, suit_port, limits);
+  auto security = load_security(config);
+  if (!security) return StartError{ExitCode::Config, security.error()};
+  auto impl = std::make_unique<Impl>(config, *std::move(security), std::move(sources), suit, suit_port, limits);
   ErrorCode error;
   const auto address = net::ip::make_address(config.address, error);
   if (!error) error = impl->bind(address, config.port);
@@ -140,6 +166,19 @@ Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return impl_->port(); }
-void Server::reconfigure(const Config::Api& config) { impl_->reconfigure(config); }
+bool Server::encrypts() const { return impl_->encrypts(); }
+bool Server::loopback_only() const { return impl_->loopback_only(); }
+
+std::optional<Error> Server::reconfigure(const Config::Api& config) {
+  auto security = load_security(config);
+  if (!security) return Error{security.error()};
+  impl_->reconfigure(config, *std::move(security));
+  return std::nullopt;
+}
+
+std::optional<Error> Server::check(const Config::Api& config) {
+  auto security = load_security(config);
+  return security ? std::nullopt : std::optional(Error{security.error()});
+}
 
 }  // namespace kinemap

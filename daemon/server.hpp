@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "daemon/api.hpp"
 #include "daemon/config.hpp"
 #include "daemon/start.hpp"
+#include "protocol/wire/result.hpp"
 
 namespace kinemap {
 
@@ -15,6 +17,8 @@ namespace kinemap {
 struct ServerLimits {
   /// A stream's client must take each message within this time, and a second more for each 64 KiB, or is disconnected.
   std::chrono::milliseconds stall{15000};
+  /// The first request must have come whole within this time of the connection, TLS handshake included.
+  std::chrono::milliseconds request{10000};
 };
 
 /// The HTTP and WebSocket server on its own thread. It reads snapshots only: nothing on the way from the suit to the
@@ -29,9 +33,15 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// Takes over what can change while it runs: pose_rate_hz, max_clients, client_buffer_bytes (for new clients). Any
+  /// As it started.
+  [[nodiscard]] bool encrypts() const;
+  [[nodiscard]] bool loopback_only() const;
+  /// Takes over all but address and port, and reads the files of tokens and TLS again: connections that are open keep
+  /// their certificate, and each request of theirs is held against the new tokens. An Error leaves all as it was. Any
   /// thread.
-  void reconfigure(const Config::Api& config);
+  std::optional<Error> reconfigure(const Config::Api& config);
+  /// Why a server so configured would not start, but for its port; it reads the files that are named.
+  static std::optional<Error> check(const Config::Api& config);
 
  private:
   class Impl;

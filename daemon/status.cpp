@@ -31,6 +31,7 @@ Json stream_json(const AssemblerStats& s) {
 Json socket_json(const ReceiverCounts& c) {
   return {{"kernel_drops", c.kernel_drops},
           {"truncated", c.truncated},
+          {"not_allowed", c.not_allowed},
           {"tcp_open", c.tcp_open},
           {"tcp_accepted", c.tcp_accepted},
           {"tcp_refused", c.tcp_refused},
@@ -144,7 +145,13 @@ Json api_json(const ApiCounts& api) {
           {"requests", api.requests},
           {"errors", api.errors},
           {"messages_skipped", api.messages_skipped},
-          {"slow_clients_closed", api.slow_clients_closed}};
+          {"slow_clients_closed", api.slow_clients_closed},
+          {"slow_requests_closed", api.slow_requests_closed},
+          {"gave_way", api.gave_way},
+          {"handshakes_failed", api.handshakes_failed},
+          {"unauthorized", api.unauthorized},
+          {"forbidden", api.forbidden},
+          {"throttled", api.throttled}};
 }
 
 Json process_json() { return {{"pid", ::getpid()}, {"rss_bytes", process_stats().resident_bytes}}; }

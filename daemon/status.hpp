@@ -17,11 +17,17 @@ struct ApiCounts {
   std::uint64_t connections = 0;  ///< open now, HTTP and WebSocket
   std::uint64_t streams = 0;      ///< of these, WebSocket
   std::uint64_t accepted = 0;
-  std::uint64_t refused = 0;  ///< beyond api.max_clients
+  std::uint64_t refused = 0;  ///< beyond api.max_clients or api.max_clients_per_address
   std::uint64_t requests = 0;
   std::uint64_t errors = 0;            ///< answers with a status of 400 and above
   std::uint64_t messages_skipped = 0;  ///< news that a slow client did not get, since newer ones were there
   std::uint64_t slow_clients_closed = 0;
+  std::uint64_t slow_requests_closed = 0;  ///< whose handshake or header did not come in time
+  std::uint64_t gave_way = 0;              ///< connections that asked for nothing, closed when there were too many
+  std::uint64_t handshakes_failed = 0;     ///< TLS
+  std::uint64_t unauthorized = 0;          ///< without a token that is known, or for more than the token allows
+  std::uint64_t forbidden = 0;             ///< by host, by origin, in the clear
+  std::uint64_t throttled = 0;             ///< requests beyond api.max_requests_per_s
 };
 
 /// Everything that the status page shows.

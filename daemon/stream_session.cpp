@@ -12,8 +12,8 @@ constexpr double kBodyRateHz = 30.0;  // unless the client chooses
 
 class StreamSession : public WebSocketSession, public Subscriber {
  public:
-  StreamSession(beast::tcp_stream stream, WebContext& context, ConnectionSlot slot)
-      : WebSocketSession(std::move(stream), context, std::move(slot)), outbox_(context.client_buffer_bytes) {}
+  StreamSession(NetStream stream, WebContext& context, ConnectionSlot slot)
+      : WebSocketSession(std::move(stream), context, std::move(slot)), outbox_(context.config.client_buffer_bytes) {}
 
   [[nodiscard]] double rate_hz() const override {
     return std::max(at(Topic::Pose).wanted ? rate_of(Topic::Pose) : 0.0,
@@ -153,7 +153,7 @@ class StreamSession : public WebSocketSession, public Subscriber {
 
 }  // namespace
 
-void serve_stream(beast::tcp_stream stream, http::request<http::string_body> request, WebContext& context,
+void serve_stream(NetStream stream, http::request<http::string_body> request, WebContext& context,
                   ConnectionSlot slot) {
   std::make_shared<StreamSession>(std::move(stream), context, std::move(slot))->accept(std::move(request));
 }

@@ -25,28 +25,38 @@ struct TcpSource::Connection {
   std::array<std::byte, 65536> buffer{};
 };
 
-TcpSource::TcpSource(net::ip::tcp::acceptor acceptor, Intake& intake)
-    : acceptor_(std::move(acceptor)), intake_(intake) {}
+TcpSource::TcpSource(net::ip::tcp::acceptor acceptor, Intake& intake, std::vector<Network> allowed)
+    : acceptor_(std::move(acceptor)), intake_(intake), allowed_(std::move(allowed)) {}
 
 void TcpSource::start() {
   acceptor_.async_accept([this](ErrorCode error, net::ip::tcp::socket socket) {
     if (error == net::error::operation_aborted) return;
-    auto& counts = intake_.counts();
-    if (!error && counts.tcp_open >= kMaxConnections) {
-      ++counts.tcp_refused;
-      spdlog::warn("suit: {} connections are open, {} is refused", counts.tcp_open, name_of(socket));
-      socket.close(error);
-    } else if (!error) {
-      ++counts.tcp_accepted;
-      ++counts.tcp_open;
-      auto connection = std::make_shared<Connection>(Connection{std::move(socket), {}, {}, {}});
-      connection->sender = name_of(connection->socket);
-      spdlog::info("suit: {} has connected", connection->sender);
-      read(connection);
-    }
+    if (!error) welcome(std::move(socket));
     intake_.publish();
     start();
   });
+}
+
+/// Who is not welcome is disconnected.
+void TcpSource::welcome(net::ip::tcp::socket socket) {
+  auto& counts = intake_.counts();
+  ErrorCode error;
+  const auto peer = parse_address(socket.remote_endpoint(error).address().to_string());
+  if (error || !allows(allowed_, *peer)) {
+    ++counts.not_allowed;
+    return;
+  }
+  if (counts.tcp_open >= kMaxConnections) {
+    ++counts.tcp_refused;
+    spdlog::warn("suit: {} connections are open, {} is refused", counts.tcp_open, name_of(socket));
+    return;
+  }
+  ++counts.tcp_accepted;
+  ++counts.tcp_open;
+  auto connection = std::make_shared<Connection>(Connection{std::move(socket), {}, {}, {}});
+  connection->sender = name_of(connection->socket);
+  spdlog::info("suit: {} has connected", connection->sender);
+  read(connection);
 }
 
 void TcpSource::read(const std::shared_ptr<Connection>& connection) {

@@ -34,8 +34,8 @@ void set_receive_buffer(net::ip::udp::socket& socket, int bytes) {
                  granted.value() / 2, bytes);
 }
 
-UdpSource::UdpSource(net::ip::udp::socket socket, Intake& intake)
-    : socket_(std::move(socket)), intake_(intake), buffer_(65536) {
+UdpSource::UdpSource(net::ip::udp::socket socket, Intake& intake, std::vector<Network> allowed)
+    : socket_(std::move(socket)), intake_(intake), buffer_(65536), allowed_(std::move(allowed)) {
   const int on = 1;
   ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   socket_.non_blocking(true);
@@ -69,22 +69,27 @@ bool UdpSource::read_one() {
   const ssize_t size = ::recvmsg(socket_.native_handle(), &message, MSG_DONTWAIT);
   if (size < 0) return false;
   note_kernel_drops(message, intake_.counts());
+  note_sender(sender, message.msg_namelen);
+  if (!last_allowed_) {
+    ++intake_.counts().not_allowed;
+    return true;
+  }
   if ((message.msg_flags & MSG_TRUNC) != 0) {
     ++intake_.counts().truncated;
     return true;
   }
-  intake_.take(std::span(buffer_).first(static_cast<std::size_t>(size)), name_of(sender, message.msg_namelen));
+  intake_.take(std::span(buffer_).first(static_cast<std::size_t>(size)), last_name_);
   return true;
 }
 
-const std::string& UdpSource::name_of(const sockaddr_storage& sender, std::size_t length) {
-  if (std::memcmp(&sender, &last_sender_, sizeof sender) == 0 && !last_name_.empty()) return last_name_;
+void UdpSource::note_sender(const sockaddr_storage& sender, std::size_t length) {
+  if (std::memcmp(&sender, &last_sender_, sizeof sender) == 0 && !last_name_.empty()) return;
   last_sender_ = sender;
   net::ip::udp::endpoint endpoint;
   std::memcpy(endpoint.data(), &sender, std::min(length, endpoint.capacity()));
   const std::string address = endpoint.address().to_string();
+  last_allowed_ = allows(allowed_, parse_address(address).value_or(AddressBytes{}));
   last_name_ = (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
-  return last_name_;
 }
 
 }  // namespace kinemap

@@ -7,18 +7,33 @@
 // after Asio with its <utility>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <list>
 
 #include "daemon/api.hpp"
+#include "daemon/net_stream.hpp"
+#include "daemon/security.hpp"
+#include "daemon/server.hpp"
 #include "daemon/stream_hub.hpp"
+#include "daemon/visitors.hpp"
 
 namespace kinemap {
 
-namespace beast = boost::beast;
 namespace http = beast::http;
 
 namespace foxglove {
 class Feed;
 }
+
+/// A connection on which no request is being answered.
+class Waiting {
+ public:
+  /// Ends, for others.
+  virtual void give_way() = 0;
+  [[nodiscard]] virtual const Visitor& visitor() const = 0;
+
+ protected:
+  ~Waiting() = default;
+};
 
 /// What all connections share; the server's thread only.
 struct WebContext {
@@ -26,45 +41,57 @@ struct WebContext {
   StreamHub& hub;
   foxglove::Feed& foxglove;
   net::thread_pool& workshop;  ///< one thread for what takes long
-  std::size_t max_clients;
-  std::size_t client_buffer_bytes;
-  std::chrono::milliseconds stall;  ///< ServerLimits::stall
-  bool loopback_only;               ///< bound to a loopback address
+  Security security;
+  Visitors visitors;
+  Config::Api config;
+  ServerLimits limits;
+  std::list<Waiting*> waiting;  ///< who has waited longest first
+
+  /// Whether limits by address hold for who comes from there.
+  [[nodiscard]] bool limited(const Visitor& visitor) const { return !visitor.local || !security.policy.trusts_local(); }
+  /// Whether there are more connections, of all, than `times` what there may be.
+  [[nodiscard]] bool crowded(std::size_t connections, std::size_t times = 1) const {
+    return connections > times * static_cast<std::size_t>(config.max_clients);
+  }
+  /// The same of one address.
+  [[nodiscard]] bool crowded(const Visitor& visitor, std::size_t connections, std::size_t times = 1) const {
+    return limited(visitor) && connections > times * static_cast<std::size_t>(config.max_clients_per_address);
+  }
 };
 
 /// Counts a connection for as long as it lives.
 class ConnectionSlot {
  public:
-  explicit ConnectionSlot(ApiCounts& counts) : counts_(&counts) { ++counts_->connections; }
-  ConnectionSlot(ConnectionSlot&& other) noexcept : counts_(std::exchange(other.counts_, nullptr)) {}
+  /// `surplus`: there were as many as may be already.
+  ConnectionSlot(ApiCounts& counts, std::shared_ptr<Visitor> visitor, bool surplus)
+      : counts_(&counts), visitor_(std::move(visitor)), surplus_(surplus) {
+    ++counts_->connections;
+    ++visitor_->connections;
+  }
+  ConnectionSlot(ConnectionSlot&&) noexcept = default;
   ConnectionSlot& operator=(ConnectionSlot&&) = delete;
   ~ConnectionSlot() {
-    if (counts_ != nullptr) --counts_->connections;
+    if (!visitor_) return;
+    --counts_->connections;
+    --visitor_->connections;
   }
+  [[nodiscard]] Visitor& visitor() const { return *visitor_; }
+  [[nodiscard]] bool surplus() const { return surplus_; }
 
  private:
   ApiCounts* counts_;
+  std::shared_ptr<Visitor> visitor_;  // null: moved from
+  bool surplus_;
 };
 
 /// Reads HTTP requests from the connection and answers them, until it ends or becomes a WebSocket.
 void serve_http(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot);
 
 /// Turns the connection into a client of the stream.
-void serve_stream(beast::tcp_stream stream, http::request<http::string_body> request, WebContext& context,
-                  ConnectionSlot slot);
+void serve_stream(NetStream stream, http::request<http::string_body> request, WebContext& context, ConnectionSlot slot);
 
 /// The same for a viewer that speaks the Foxglove protocol; `subprotocol` is the one of its offers that was chosen.
-void serve_foxglove(beast::tcp_stream stream, http::request<http::string_body> request, const std::string& subprotocol,
+void serve_foxglove(NetStream stream, http::request<http::string_body> request, const std::string& subprotocol,
                     WebContext& context, ConnectionSlot slot);
-
-/// A server on a loopback address answers only to loopback names: else a web page could point a name of its own at
-/// 127.0.0.1 and read the map from the browser of whoever visits it (DNS rebinding).
-bool host_allowed(std::string_view host, bool loopback_only);
-/// WebSockets are not bound by the browser's same-origin rule, so the server holds it: no Origin (no browser), or the
-/// same host.
-bool origin_allowed(std::string_view origin, std::string_view host);
-/// The same for viewers, which come as desktop programs (their pages are files) or are served by another program of
-/// this machine.
-bool viewer_origin_allowed(std::string_view origin, std::string_view host);
 
 }  // namespace kinemap

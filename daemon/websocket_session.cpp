@@ -15,8 +15,8 @@ constexpr std::chrono::seconds kIdleTimeout{30};
 
 }  // namespace
 
-WebSocketSession::WebSocketSession(beast::tcp_stream stream, WebContext& context, ConnectionSlot slot)
-    : stream_(std::move(stream)), context_(context), slot_(std::move(slot)) {}
+WebSocketSession::WebSocketSession(NetStream stream, WebContext& context, ConnectionSlot slot)
+    : stream_(std::move(stream)), pause_(stream_.get_executor()), context_(context), slot_(std::move(slot)) {}
 
 void WebSocketSession::accept(http::request<http::string_body> request, const std::string& subprotocol) {
   auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::server);
@@ -41,13 +41,27 @@ void WebSocketSession::accept(http::request<http::string_body> request, const st
 
 void WebSocketSession::read() {
   stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
-    if (error || self->ended_) return self->end();
-    const auto data = self->buffer_.data();
-    self->on_message({static_cast<const char*>(data.data()), data.size()}, self->stream_.got_text());
-    self->buffer_.consume(self->buffer_.size());
-    self->write();
-    if (!self->ended_) self->read();
+    if (error) return self->end();
+    self->take();
   });
+}
+
+/// A message is a request like any other; who sends too many is read more slowly.
+void WebSocketSession::take() {
+  if (ended_) return;
+  const auto pause = context_.limited(slot_.visitor()) ? context_.visitors.ask(slot_.visitor(), Clock::now())
+                                                       : Clock::duration::zero();
+  if (pause > Clock::duration::zero()) {
+    pause_.expires_after(pause);
+    return pause_.async_wait([self = shared_from_this()](ErrorCode error) {
+      if (!error) self->take();
+    });
+  }
+  const auto data = buffer_.data();
+  on_message({static_cast<const char*>(data.data()), data.size()}, stream_.got_text());
+  buffer_.consume(buffer_.size());
+  write();
+  if (!ended_) read();
 }
 
 void WebSocketSession::write() {
@@ -55,7 +69,7 @@ void WebSocketSession::write() {
   auto message = std::make_shared<const Outgoing>(next());
   if (!message->text) return;
   writing_ = true;
-  write_deadline_ = Clock::now() + context_.stall + std::chrono::seconds(message->size() / kSlowestBytesPerS);
+  write_deadline_ = Clock::now() + context_.limits.stall + std::chrono::seconds(message->size() / kSlowestBytesPerS);
   stream_.binary(message->binary);
   const std::array<net::const_buffer, 2> buffers{net::buffer(message->head), net::buffer(*message->text)};
   stream_.async_write(buffers, [self = shared_from_this(), message](ErrorCode error, std::size_t) {

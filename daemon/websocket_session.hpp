@@ -25,7 +25,7 @@ struct Outgoing {
 /// giving up on a client that does not take them. The server's thread only.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
-  WebSocketSession(beast::tcp_stream stream, WebContext& context, ConnectionSlot slot);
+  WebSocketSession(NetStream stream, WebContext& context, ConnectionSlot slot);
   virtual ~WebSocketSession() = default;
   WebSocketSession(const WebSocketSession&) = delete;
   WebSocketSession& operator=(const WebSocketSession&) = delete;
@@ -56,10 +56,12 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
 
  private:
   void read();
+  void take();
   void end();
   void say_goodbye();
 
-  beast::websocket::stream<beast::tcp_stream> stream_;
+  beast::websocket::stream<NetStream> stream_;
+  net::steady_timer pause_;
   WebContext& context_;
   ConnectionSlot slot_;
   http::request<http::string_body> request_;

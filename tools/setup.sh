@@ -18,6 +18,7 @@ packages=(
   libspdlog-dev nlohmann-json3-dev libcli11-dev libexpat1-dev zlib1g-dev # log, JSON, command line, XML, gzip
   libsystemd-dev                                              # readiness, watchdog
   dpkg-dev file                                               # the Debian package
+  libssl-dev libqrencode-dev                                  # TLS, pairing
   libgtest-dev libgmock-dev libbenchmark-dev                  # tests
   python3-jsonschema                                          # the map's schema is tested with it
 )

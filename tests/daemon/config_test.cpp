@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -43,19 +45,19 @@ constexpr std::size_t member_count() {
 
 /// Visitor: holds the number of members of each struct against the number of fields in its list.
 struct Counter {
-  std::string path;
+  std::string prefix;
   std::size_t fields_seen = 0;
 
   template <class T>
   void check(T& value) {
     fields(*this, value);
-    EXPECT_EQ(fields_seen, member_count<T>()) << "members of the struct of " << (path.empty() ? "Config" : path)
+    EXPECT_EQ(fields_seen, member_count<T>()) << "members of the struct of " << (prefix.empty() ? "Config" : prefix)
                                               << " that daemon/config_fields.hpp does not list";
   }
   template <class T>
   void section(const char* key, T& value) {
     ++fields_seen;
-    Counter inner{path + key + ".", 0};
+    Counter inner{prefix + key + ".", 0};
     inner.check(value);
   }
   template <class T>
@@ -65,7 +67,8 @@ struct Counter {
   void flag(const char*, bool&) { ++fields_seen; }
   void choice(const char*, std::string&, std::initializer_list<const char*>) { ++fields_seen; }
   void address(const char*, std::string&) { ++fields_seen; }
-  void directory(const char*, std::string&) { ++fields_seen; }
+  void path(const char*, std::string&) { ++fields_seen; }
+  void list(const char*, std::vector<std::string>&, const ListOf&) { ++fields_seen; }
   void at_most(const char*, double, const char*, double) {}
 };
 
@@ -156,6 +159,10 @@ TEST(Config, WrongTypesAreRefused) {
               HasSubstr("suit.address: must be an IPv4 or IPv6 address"));
   EXPECT_THAT(error_of(R"({"journal": {"directory": "here"}})"),
               HasSubstr("journal.directory: must be an absolute path"));
+  EXPECT_THAT(error_of(R"({"suit": {"allow": "10.0.0.1"}})"), HasSubstr("suit.allow: must be a list of addresses"));
+  EXPECT_THAT(error_of(R"({"suit": {"allow": ["10.0.0.1/33"]}})"), HasSubstr("suit.allow: \"10.0.0.1/33\" is wrong"));
+  EXPECT_THAT(error_of(R"({"api": {"allowed_hosts": ["a:1"]}})"), HasSubstr("api.allowed_hosts: \"a:1\" is wrong"));
+  EXPECT_THAT(error_of(R"({"api": {"allowed_origins": ["https://a/b"]}})"), HasSubstr("api.allowed_origins: "));
   EXPECT_THAT(error_of(R"({"suit": 9763})"), HasSubstr("suit: must be an object"));
   EXPECT_THAT(error_of("[]"), HasSubstr("must be an object"));
   EXPECT_THAT(error_of(R"({"log": null})"), HasSubstr("log: must be an object"));
@@ -185,6 +192,33 @@ TEST(Config, SyntaxErrorsNameLineAndColumn) {
 
 TEST(Config, AKeyMayNotStandTwice) {
   EXPECT_THAT(error_of(R"({"log": {"level": "info", "level": "debug"}})"), HasSubstr("\"level\" stands twice"));
+}
+
+TEST(Config, ListsAreRead) {
+  const auto config = config_from_text(
+      R"({"suit": {"allow": ["10.0.0.0/8", "fe80::/10", "::1"]}, "api": {"allowed_origins": ["https://a.example:1"]}})",
+      "x");
+  ASSERT_TRUE(config) << config.error();
+  EXPECT_EQ(changed_keys(Config{}, *config), (std::vector<std::string>{"suit.allow", "api.allowed_origins"}));
+  EXPECT_EQ(config->suit.allow.size(), 3U);
+}
+
+TEST(Config, WhatLiesBesideTheFileIsLaidOverItByName) {
+  const auto folder = std::filesystem::temp_directory_path() / ("config_test." + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder / "conf.d");
+  const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+  write("config.json", R"({"api": {"port": 1, "max_clients": 2}})");
+  write("conf.d/20.json", R"({"api": {"port": 3}})");
+  write("conf.d/10.json", R"({"api": {"port": 4, "pose_rate_hz": 5}})");
+  write("conf.d/30.json~", "nonsense");
+  const auto config = config_from_file(folder / "config.json");
+  ASSERT_TRUE(config) << config.error();
+  EXPECT_EQ(config->api.port, 3);
+  EXPECT_EQ(config->api.max_clients, 2);
+  EXPECT_EQ(config->api.pose_rate_hz, 5);
+  write("conf.d/40.json", R"({"api": {"portt": 3}})");
+  EXPECT_THAT(config_from_file(folder / "config.json").error(), HasSubstr("conf.d/40.json: api.portt: unknown key"));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Config, AFileThatCannotBeReadIsNamed) {

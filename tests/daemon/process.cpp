@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdlib>
@@ -83,8 +84,11 @@ int Process::wait() {
 RunningDaemon::RunningDaemon(std::vector<std::string> arguments)
     : process(KINEMAPD, with_free_ports(std::move(arguments))) {
   ready = process.wait_for_output("ready: ") && process.wait_for_output("/\n");
-  suit_port = number_after(process.output(), "0.0.0.0 port ");
-  api_port = number_after(process.output(), "http://127.0.0.1:");
+  // "ready: suit on udp ADDRESS port PORT, map at http://ADDRESS:PORT/"
+  const auto said = process.output().substr(std::min(process.output().find("ready: "), process.output().size()));
+  suit_port = number_after(said, " port ");
+  const auto map = said.find("map at ");
+  if (map != std::string::npos) api_port = number_after(said.substr(said.find("://", map) + 3), ":");
 }
 
 }  // namespace kinemap::test

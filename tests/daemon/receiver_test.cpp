@@ -101,6 +101,26 @@ TEST(Receiver, GarbageAndOversizedDatagramsAreCounted) {
   EXPECT_EQ(collector.frames, 0);
 }
 
+TEST(Receiver, OnlyThoseThatAreAllowedMaySend) {
+  for (const char* transport : {"udp", "tcp"}) {
+    Collector collector;
+    auto started =
+        Receiver::open({transport, "127.0.0.1", 0, 1 << 20, {"127.0.0.2", "10.0.0.0/8"}}, {}, collector.sink());
+    auto& receiver = *std::get<0>(started);
+    if (transport == std::string("udp"))
+      test::send_udp(receiver.port(), test::glider_datagram(0));
+    else
+      EXPECT_EQ(test::raw_exchange(receiver.port(), "x"), "");
+    EXPECT_TRUE(eventually([&] { return receiver.state().counts.not_allowed == 1; }));
+    EXPECT_EQ(receiver.state().counts.stream.datagrams, 0U);
+    EXPECT_EQ(receiver.state().counts.tcp_accepted, 0U);
+  }
+  Collector collector;
+  auto started = Receiver::open({"udp", "127.0.0.1", 0, 1 << 20, {"127.0.0.0/8"}}, {}, collector.sink());
+  test::send_udp(std::get<0>(started)->port(), test::glider_datagram(0));
+  EXPECT_TRUE(eventually([&] { return std::get<0>(started)->state().counts.stream.datagrams == 1; }));
+}
+
 TEST(Receiver, WearerInformationIsOfferedUntilItIsTaken) {
   Collector collector;
   collector.refuse_wearers = 3;

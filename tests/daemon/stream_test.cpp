@@ -6,7 +6,6 @@
 
 #include "daemon/outbox.hpp"
 #include "daemon/stream_protocol.hpp"
-#include "daemon/web.hpp"
 
 namespace kinemap {
 namespace {
@@ -141,33 +140,6 @@ TEST(StreamProtocol, AnswersAreJson) {
   EXPECT_EQ(Json::parse(news_text(Topic::Map, "[]")), Json::parse(R"({"op":"message","topic":"map","data":[]})"));
   EXPECT_EQ(Json::parse(subscribed_text({Topic::Events, Topic::Pose}, {{Topic::Pose, 10.0}})),
             Json::parse(R"({"op":"subscribed","topics":["events","pose"],"rate_hz":{"pose":10.0}})"));
-}
-
-TEST(WebPolicy, ALoopbackServerAnswersToLoopbackNamesOnly) {
-  for (const char* host : {"localhost", "LOCALHOST:8765", "127.0.0.1:8765", "127.1.2.3", "[::1]:8765", ""})
-    EXPECT_TRUE(host_allowed(host, true)) << host;
-  for (const char* host :
-       {"example.org", "127.0.0.1.example.org", "localhost.example.org:8765", "192.168.1.2", "[::2]", "["})
-    EXPECT_FALSE(host_allowed(host, true)) << host;
-  EXPECT_TRUE(host_allowed("example.org", false));
-}
-
-TEST(WebPolicy, StreamsAreForPagesOfTheSameHost) {
-  EXPECT_TRUE(origin_allowed("", "localhost:8765"));
-  EXPECT_TRUE(origin_allowed("http://localhost:8765", "localhost:8765"));
-  EXPECT_TRUE(origin_allowed("https://Map.example", "map.example"));
-  for (const char* origin : {"null", "http://evil.example", "http://localhost:1", "localhost:8765", "http://"})
-    EXPECT_FALSE(origin_allowed(origin, "localhost:8765")) << origin;
-}
-
-TEST(WebPolicy, ViewersAreDesktopProgramsOrPagesOfThisMachine) {
-  for (const char* origin : {"", "file://", "http://localhost:8080", "http://127.0.0.1", "http://localhost:8765"})
-    EXPECT_TRUE(viewer_origin_allowed(origin, "localhost:8765")) << origin;
-  EXPECT_TRUE(viewer_origin_allowed("http://map.example", "map.example"));
-  for (const char* origin : {"null", "http://evil.example", "https://localhost.evil.example", "http://", "file://x"})
-    EXPECT_FALSE(viewer_origin_allowed(origin, "localhost:8765")) << origin;
-  EXPECT_FALSE(viewer_origin_allowed("http://localhost:8080", "map.example"))
-      << "of the visitor's machine, not of ours";
 }
 
 }  // namespace

@@ -69,6 +69,38 @@ test("without a suit the page says so, and what to do", () =>
     assert.deepEqual(complaints, []);
   }));
 
+test("who has no token is asked for it once, and a link of `kinemap pair` brings it", async () => {
+  const token = "viewer-0123456789abcdef";
+  const daemon = await Daemon.start({ token });
+  try {
+    const { page, complaints, close } = await open(daemon, { hash: "" });
+    const prompt = page.getByRole("dialog", { name: "Token" });
+    await prompt.waitFor();
+    await prompt.getByLabel("Token").fill("wrong-0123456789abcdef");
+    await prompt.getByRole("button", { name: "Show the map" }).click();
+    await prompt.getByRole("alert").waitFor();
+    await prompt.getByLabel("Token").fill(token);
+    await prompt.getByRole("button", { name: "Show the map" }).click();
+    await page.locator(".notice", { hasText: "No suit yet" }).waitFor();
+    assert.equal(await prompt.count(), 0);
+    await page.reload(); // kept
+    await page.locator(".notice", { hasText: "No suit yet" }).waitFor();
+    // A file, for which a plain link would show no token.
+    await page.getByRole("tab", { name: "Files" }).click();
+    const [saved] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "map.json" }).click()]);
+    assert.equal(saved.suggestedFilename(), "map.json");
+    assert.deepEqual(complaints.filter((text) => !/401|WebSocket/.test(text)), []);
+    await close();
+
+    const linked = await open(daemon, { hash: `#token=${token}` });
+    await linked.page.locator(".notice", { hasText: "No suit yet" }).waitFor();
+    assert.equal(await linked.page.evaluate(() => location.hash), "");
+    await linked.close();
+  } finally {
+    await daemon.remove();
+  }
+});
+
 test("nothing is loaded from elsewhere, and no inline script may run", () =>
   withDaemon(async (daemon) => {
     const policy = (await fetch(daemon.url)).headers.get("content-security-policy");

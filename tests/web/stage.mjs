@@ -37,13 +37,19 @@ async function freeUdpPort() {
 
 /** kinemapd on free ports, which stay the same when it is stopped and started again. */
 export class Daemon {
-  static async start() {
+  /** With a `token` the daemon wants it of everybody. */
+  static async start({ token } = {}) {
     const daemon = new Daemon();
     daemon.folder = await mkdtemp(join(tmpdir(), "kinemap-web-"));
     daemon.suitPort = await freeUdpPort();
     daemon.apiPort = await freeTcpPort();
     daemon.url = `http://127.0.0.1:${daemon.apiPort}/`;
-    const config = { suit: { address: "127.0.0.1", port: daemon.suitPort }, api: { port: daemon.apiPort } };
+    const tokens = join(daemon.folder, "tokens");
+    const config = {
+      suit: { address: "127.0.0.1", port: daemon.suitPort },
+      api: { port: daemon.apiPort, ...(token ? { auth: "always", tokens } : {}) },
+    };
+    if (token) await writeFile(tokens, `read ${token}\n`, { mode: 0o600 });
     await writeFile(join(daemon.folder, "config.json"), JSON.stringify(config));
     await daemon.run();
     return daemon;
@@ -53,7 +59,7 @@ export class Daemon {
     this.process = spawn(kinemapd, ["--config", join(this.folder, "config.json")], { stdio: "ignore" });
     for (;;) {
       if (this.process.exitCode !== null) throw new Error(`kinemapd did not start: exit code ${this.process.exitCode}`);
-      const alive = await fetch(`${this.url}healthz`).then((answer) => answer.ok).catch(() => false);
+      const alive = await fetch(this.url).then((answer) => answer.ok).catch(() => false);
       if (alive) return;
       await new Promise((resolve) => setTimeout(resolve, 50));
     }

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/kinemap/client.hpp"
 
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
+#include "daemon/net_stream.hpp"
+// after Asio with its <utility>
+#include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cctype>
 #include <nlohmann/json.hpp>
 
+#include "daemon/network.hpp"
 #include "protocol/text_format.hpp"
+#include "tools/kinemap/certificate.hpp"
 
 namespace kinemap::cli {
 namespace {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
@@ -50,14 +50,55 @@ error_code wait(asio::io_context& io, const error_code& code) {
   return code;
 }
 
-error_code connect_stream(asio::io_context& io, beast::tcp_stream& stream, const Endpoint& daemon) {
+/// Whose certificate is right: the pinned one, or one for this host that is vouched for.
+Result<std::shared_ptr<ssl::context>> client_tls(const DaemonAddress& daemon) {
+  auto context = std::make_shared<ssl::context>(ssl::context::tls_client);
+  SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
+  if (!daemon.fingerprint.empty()) return context;  // looked at after the handshake, before anything is sent
+  error_code code;
+  if (daemon.ca.empty())
+    context->set_default_verify_paths(code);
+  else
+    context->load_verify_file(daemon.ca, code);
+  if (code) return Error{daemon.ca + ": cannot be used as certificates (PEM): " + code.message()};
+  context->set_verify_mode(ssl::verify_peer);
+  context->set_verify_callback(ssl::host_name_verification(daemon.endpoint.host));
+  return context;
+}
+
+/// The TLS handshake on a connected stream.
+std::optional<Error> encrypt(asio::io_context& io, NetStream& stream, const DaemonAddress& daemon) {
+  auto context = client_tls(daemon);
+  if (!context) return Error{context.error()};
+  stream.encrypt(*std::move(context));
+  SSL* const native = stream.tls().native_handle();
+  if (!parse_address(daemon.endpoint.host)) SSL_set_tlsext_host_name(native, daemon.endpoint.host.c_str());
+  error_code code;
+  stream.tls().async_handshake(ssl::stream_base::client, [&](const error_code& result) { code = result; });
+  if (wait(io, code)) {
+    Error error = connection_error(daemon, code);
+    if (SSL_get_verify_result(native) != X509_V_OK)
+      error.message +=
+          "; a certificate that `kinemap pair` made is known by its --fingerprint (or KINEMAP_FINGERPRINT)";
+    return error;
+  }
+  if (daemon.fingerprint.empty()) return std::nullopt;
+  const std::unique_ptr<X509, void (*)(X509*)> peer(SSL_get1_peer_certificate(native), X509_free);
+  const std::string shown = peer ? fingerprint_of(peer.get()) : "";
+  if (shown == daemon.fingerprint) return std::nullopt;
+  return Error{daemon.text() + ": its certificate is another one (SHA-256 " + shown + ") than " + daemon.fingerprint +
+               ": is this the right machine, or was it paired anew?"};
+}
+
+std::optional<Error> connect_stream(asio::io_context& io, NetStream& stream, const DaemonAddress& daemon) {
   error_code code;
   tcp::resolver resolver(io);
-  const auto addresses = resolver.resolve(daemon.host, std::to_string(daemon.port), code);
-  if (code) return code;
-  stream.expires_after(kPatience);
-  stream.async_connect(addresses, [&](const error_code& result, const tcp::endpoint&) { code = result; });
-  return wait(io, code);
+  const auto addresses = resolver.resolve(daemon.endpoint.host, std::to_string(daemon.endpoint.port), code);
+  if (code) return connection_error(daemon, code);
+  stream.next_layer().expires_after(kPatience);
+  stream.next_layer().async_connect(addresses, [&](const error_code& result, const tcp::endpoint&) { code = result; });
+  if (wait(io, code)) return connection_error(daemon, code);
+  return daemon.tls ? encrypt(io, stream, daemon) : std::nullopt;
 }
 
 /// The daemon's own words for a status that is not 200: {"error": {"message": …}}.
@@ -72,23 +113,23 @@ std::string message_of(const http::response<http::string_body>& response) {
 
 Result<std::string> http_get(const DaemonAddress& daemon, const std::string& target) {
   asio::io_context io;
-  beast::tcp_stream stream(io);
-  error_code code = connect_stream(io, stream, daemon.endpoint);
-  if (code) return connection_error(daemon, code);
+  NetStream stream(io);
+  if (auto error = connect_stream(io, stream, daemon)) return std::move(*error);
+  error_code code;
 
   http::request<http::empty_body> request(http::verb::get, daemon.path + target, 11);
   request.set(http::field::host, daemon.endpoint.text());
   show_token(daemon, request);
   request.set(http::field::user_agent, "kinemap");
   request.set(http::field::connection, "close");
-  stream.expires_after(kPatience);
+  stream.next_layer().expires_after(kPatience);
   http::async_write(stream, request, [&](const error_code& result, std::size_t) { code = result; });
   if (wait(io, code)) return connection_error(daemon, code);
 
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
   parser.body_limit(kMaxMessageBytes);
-  stream.expires_after(kPatience);
+  stream.next_layer().expires_after(kPatience);
   http::async_read(stream, buffer, parser, [&](const error_code& result, std::size_t) { code = result; });
   if (wait(io, code)) {
     Error error = connection_error(daemon, code);
@@ -130,8 +171,8 @@ class StreamClient::Impl {
   }
 
   std::optional<Error> open(const std::string& subscribe) {
-    error_code code = connect_stream(io_, beast::get_lowest_layer(socket_), daemon_.endpoint);
-    if (code) return connection_error(daemon_, code);
+    if (auto error = connect_stream(io_, socket_.next_layer(), daemon_)) return error;
+    error_code code;
     beast::get_lowest_layer(socket_).expires_never();
     auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::client);
     timeouts.handshake_timeout = kPatience;
@@ -173,7 +214,7 @@ class StreamClient::Impl {
  private:
   DaemonAddress daemon_;
   asio::io_context io_;
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<NetStream> socket_;
   beast::flat_buffer buffer_;
   error_code result_;
   bool reading_ = false;

@@ -25,6 +25,7 @@ void add_watch(CLI::App& app, Run& run);
 void add_optimize(CLI::App& app, Run& run);
 void add_sessions(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
+void add_pair(CLI::App& app, Run& run);
 void add_shell(CLI::App& app, Run& run);
 
 /// Adds a sub-command whose options live in a shared `Options`; `work(options)` gives the exit code.

@@ -61,7 +61,10 @@ constexpr const char* kRest = R"(.SH ENVIRONMENT
 The kinemapd that is asked where no \fB\-\-url\fR is given, as http://HOST:PORT. Without either it is http://127.0.0.1:8765.
 .TP
 .B KINEMAP_TOKEN
-Goes with each request as "Authorization: Bearer". It is not encrypted on its way: use it over a tunnel or on a network that you trust.
+Goes with each request as "Authorization: Bearer", over https or to this machine only.
+.TP
+.B KINEMAP_FINGERPRINT
+SHA\-256 of the certificate that a daemon at https:// must have, as \fBkinemap pair\fR prints it.
 .SH EXIT STATUS
 .TP
 .B 0

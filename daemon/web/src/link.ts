@@ -20,7 +20,7 @@ export class StreamLink {
   private link: Link = { phase: "connecting", since: Date.now() };
 
   constructor(
-    private url: string,
+    private url: () => string,
     private handlers: LinkHandlers,
   ) {
     addEventListener("online", () => this.hurry());
@@ -36,7 +36,7 @@ export class StreamLink {
   }
 
   private open(): void {
-    const socket = new WebSocket(this.url);
+    const socket = new WebSocket(this.url());
     this.socket = socket;
     this.listen(kSilenceMs);
     socket.onopen = () => this.handlers.onOpen((message) => socket.send(JSON.stringify(message)));

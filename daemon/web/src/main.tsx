@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live page: a store, a session that fills it from the daemon's stream, and the views that show it.
 import { render } from "preact";
+import { takeTokenFromLink } from "./access";
 import { Wearer } from "./live";
 import { Session } from "./session";
 import { emptyMap, Store } from "./store";
@@ -8,6 +9,7 @@ import { applyTheme, savedTheme } from "./theme";
 import { App } from "./ui/app";
 
 applyTheme(savedTheme());
+takeTokenFromLink();
 const store = new Store({
   link: { phase: "connecting", since: Date.now() },
   map: emptyMap,
@@ -17,6 +19,6 @@ const store = new Store({
   follow: false,
 });
 const wearer = new Wearer();
-new Session(store, wearer, new URL(".", location.href));
+const session = new Session(store, wearer, new URL(".", location.href));
 const root = document.getElementById("app");
-if (root) render(<App store={store} wearer={wearer} />, root);
+if (root) render(<App store={store} wearer={wearer} onToken={(token) => session.unlock(token)} />, root);

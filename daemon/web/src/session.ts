@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From messages to the state: what the daemon says, applied.
+import { fetchWithToken, hasToken, keepToken, streamUrl } from "./access";
 import { happenings, newestNumber, noteOf, withEvents } from "./events";
 import { heading } from "./format";
 import { StreamLink } from "./link";
@@ -42,15 +43,14 @@ export class Session {
   private trackTimer?: ReturnType<typeof setTimeout>;
   private trackRevision = -1;
   private trackClosures = "";
+  private stream: StreamLink;
 
   constructor(
     private store: Store,
     private wearer: Wearer,
     private base: URL,
   ) {
-    const url = new URL("api/v1/stream", base);
-    url.protocol = url.protocol.replace("http", "ws");
-    new StreamLink(url.href, {
+    this.stream = new StreamLink(() => streamUrl(base), {
       onLink: (link) => this.onLink(link),
       onOpen: (send) => this.onOpen(send),
       onMessage: (message) => this.onMessage(message as Message),
@@ -71,8 +71,22 @@ export class Session {
   private onLink(link: Link): void {
     const before = this.store.get().link;
     this.store.set({ link });
+    if (link.phase === "lost") void this.askWhetherLocked();
+    if (link.phase === "open") this.store.set({ locked: undefined });
     if (link.phase === "lost" && before.phase === "open") this.note("Link lost", link.since);
     if (link.phase === "open" && before.phase === "lost") this.note("Link back", link.since);
+  }
+
+  /** A WebSocket that is refused does not tell a page why; a request does. */
+  private async askWhetherLocked(): Promise<void> {
+    const answer = await fetchWithToken(new URL("api/v1/status", this.base)).catch(() => undefined);
+    if (answer?.status === 401) this.store.set({ locked: hasToken() ? "wrong" : "missing" });
+  }
+
+  unlock(token: string): void {
+    keepToken(token);
+    this.store.set({ locked: undefined });
+    this.stream.hurry();
   }
 
   private note(text: string, at: number): void {
@@ -127,7 +141,7 @@ export class Session {
 
   private async fetch<Answer>(path: string): Promise<Answer | undefined> {
     try {
-      const answer = await fetch(new URL(path, this.base));
+      const answer = await fetchWithToken(new URL(path, this.base));
       return answer.ok ? ((await answer.json()) as Answer) : undefined;
     } catch {
       return undefined; // the link's own watch says so

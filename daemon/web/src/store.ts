@@ -28,6 +28,8 @@ export interface State {
   /** Why there is no 3-D view, when there is none. */
   no3d?: string;
   follow: boolean;
+  /** Set while the daemon wants a token: whether it was shown one, which it does not know. */
+  locked?: "missing" | "wrong";
 }
 
 export const emptyMap: MapDocument = { revision: 0, time: 0, objects: [], rooms: [], doorways: [] };

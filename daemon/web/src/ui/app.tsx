@@ -13,6 +13,7 @@ import { SceneHost } from "./scene_host";
 import { useSheet } from "./sheet";
 import { SuitPanel } from "./suit";
 import { suitState, type SuitState } from "./suit_state";
+import { TokenPrompt } from "./token_prompt";
 
 const kTabs = ["Objects", "Events", "Suit", "Files"] as const;
 type Tab = (typeof kTabs)[number];
@@ -79,7 +80,7 @@ function Legend({ raw }: { raw: boolean }) {
   );
 }
 
-export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
+export function App({ store, wearer, onToken }: { store: Store; wearer: Wearer; onToken: (token: string) => void }) {
   const state = useStore(store);
   const now = useNow();
   const [tab, setTab] = useState<Tab>("Objects");
@@ -120,6 +121,7 @@ export function App({ store, wearer }: { store: Store; wearer: Wearer }) {
   const nothing = map.objects.length === 0 && track.length === 0;
   return (
     <div class={`app sheet-${sheet.stop}${state.link.phase === "lost" ? " stale" : ""}`}>
+      {state.locked && <TokenPrompt wrong={state.locked === "wrong"} onToken={onToken} />}
       <header class="bar">
         <h1>Kinemap</h1>
         <p class={`pill tone-${suit.tone}`}>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+import { download, hasToken } from "../access";
+
 /** The exports that one takes along: name and what reads it; protocol/README.md describes them. */
 const kFiles = [
   ["scene.glb", "the map in 3-D, glTF"],
@@ -20,7 +22,15 @@ export function FileList() {
       <ul class="files">
         {kFiles.map(([name, what]) => (
           <li>
-            <a href={`api/v1/export/${name}`} download={name}>
+            <a
+              href={`api/v1/export/${name}`}
+              download={name}
+              onClick={(event) => {
+                if (!hasToken()) return;
+                event.preventDefault();
+                void download(`api/v1/export/${name}`, name);
+              }}
+            >
               {name}
               <span>{what}</span>
             </a>

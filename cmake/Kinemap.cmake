@@ -20,6 +20,15 @@ if(KINEMAP_SANITIZE)
   endif()
 endif()
 
+# For libFuzzer (clang only): everything tells it which ways were taken; tests/fuzz.
+option(KINEMAP_FUZZ "Have libFuzzer drive the fuzz targets" OFF)
+if(KINEMAP_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    message(FATAL_ERROR "KINEMAP_FUZZ needs clang++: cmake --preset fuzz")
+  endif()
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
 # Bits must not depend on the build machine: no -march=native, no -ffast-math.
 function(kinemap_defaults target)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})

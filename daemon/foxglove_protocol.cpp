@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "daemon/json_params.hpp"
+
 namespace kinemap::foxglove {
 namespace {
 
@@ -91,7 +93,7 @@ std::optional<std::string> choose_subprotocol(std::string_view offered) {
 }
 
 ClientMessage parse_text(std::string_view text) {
-  const Json message = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const Json message = parse_message(text);
   if (message.is_discarded() || !message.is_object()) return BadMessage{"a text message is a JSON object with \"op\""};
   const auto op_it = message.find("op");
   const std::string op = op_it != message.end() && op_it->is_string() ? op_it->get<std::string>() : std::string();

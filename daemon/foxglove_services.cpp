@@ -71,7 +71,7 @@ Reply Services::call(const ServiceCall& call) {
     return bad_request("there is no service " + std::to_string(call.service) + "; \"advertiseServices\" has them");
   if (call.encoding != "json") return bad_request("requests are encoded as \"json\"");
   Json request = Json::object();
-  if (!call.payload.empty()) request = Json::parse(call.payload, nullptr, /*allow_exceptions=*/false);
+  if (!call.payload.empty()) request = parse_message(call.payload);
   if (!request.is_object()) return bad_request("a request is a JSON object of the query's parameters");
 
   const Route& route = *services_[call.service - 1].route;

@@ -9,6 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kDeepest = 16;
+
 std::optional<std::string> param_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number()) return value.dump();
@@ -23,6 +25,16 @@ std::optional<std::string> param_text(const Json& value) {
 }
 
 }  // namespace
+
+Json parse_message(std::string_view text) {
+  bool deep = false;
+  const auto within = [&deep](int depth, Json::parse_event_t, Json&) {
+    deep |= depth > kDeepest;
+    return depth <= kDeepest;
+  };
+  Json json = Json::parse(text, within, /*allow_exceptions=*/false);
+  return deep ? Json(Json::value_t::discarded) : json;
+}
 
 Result<Params> params_from_json(const Json& object) {
   Params params;

@@ -84,7 +84,7 @@ ClientMessage subscribe_of(const Json& message, std::vector<Topic> topics) {
 }  // namespace
 
 ClientMessage parse_client_message(std::string_view text) {
-  const Json message = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  const Json message = parse_message(text);
   if (message.is_discarded() || !message.is_object()) return bad("a message is a JSON object with \"op\"");
   const auto op_it = message.find("op");
   const std::string op = op_it != message.end() && op_it->is_string() ? op_it->get<std::string>() : std::string();

@@ -229,6 +229,35 @@ std::optional<Entry> read_any(const Json& json, const std::variant<E...>*) {
   return entry;
 }
 
+/// Whether CBOR is of the shape that entries have: not deep, and no size said that is not there.
+class Shape : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool start_object(std::size_t size) override { return enter(size); }
+  bool start_array(std::size_t size) override { return enter(size); }
+  bool end_object() override { return leave(); }
+  bool end_array() override { return leave(); }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  static constexpr int kDeepest = 8;             // an entry's contacts' poses are at 4
+  static constexpr std::size_t kMost = 1 << 24;  // elements of one array
+
+  bool enter(std::size_t size) { return ++depth_ <= kDeepest && (size <= kMost || size == std::size_t(-1)); }
+  bool leave() {
+    --depth_;
+    return true;
+  }
+  int depth_ = 0;
+};
+
 }  // namespace
 
 std::string encode(const Entry& entry) {
@@ -246,6 +275,8 @@ std::string encode(const Entry& entry) {
 }
 
 std::optional<Entry> decode(std::string_view payload) {
+  // In this order: from_cbor throws at sizes that memory cannot hold, and takes as much stack as the bytes nest deep.
+  if (Shape shape; !Json::sax_parse(payload, &shape, Json::input_format_t::cbor)) return std::nullopt;
   const Json json = Json::from_cbor(payload.begin(), payload.end(), true, false);
   if (!json.is_object() || !json.contains("type")) return std::nullopt;
   return read_any(json, static_cast<const Entry*>(nullptr));

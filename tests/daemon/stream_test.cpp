@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/foxglove_protocol.hpp"
+#include "daemon/json_params.hpp"
 #include "daemon/outbox.hpp"
 #include "daemon/stream_protocol.hpp"
 
@@ -130,6 +132,16 @@ TEST(StreamProtocol, BadMessagesSayWhatIsAllowed) {
   EXPECT_EQ(parsed<BadMessage>(R"({"op":"query","id":1})").id, "1");
   // Deep nesting must not exhaust the stack.
   EXPECT_THAT(message(std::string(200000, '[')), HasSubstr("JSON object"));
+}
+
+TEST(StreamProtocol, DeepNestingIsRefused) {
+  constexpr std::size_t kLevels = 130000;  // as many as fit into one message
+  const std::string deep = std::string(kLevels, '[') + std::string(kLevels, ']');
+  for (const std::string& text : {R"({"op":"query","id":)" + deep + R"(,"path":"objects"})", deep}) {
+    EXPECT_TRUE(std::holds_alternative<BadMessage>(parse_client_message(text)));
+    EXPECT_TRUE(std::holds_alternative<foxglove::BadMessage>(foxglove::parse_text(text)));
+  }
+  EXPECT_TRUE(parse_message(R"({"a":)" + deep + R"(,"b":1})").is_discarded());
 }
 
 TEST(StreamProtocol, AnswersAreJson) {

@@ -63,6 +63,11 @@ std::vector<std::string> encoded(const std::vector<Entry>& entries) {
   return list;
 }
 
+TEST(Journal, AnEntryThatSaysToBeHugeOrIsDeepIsNone) {
+  EXPECT_FALSE(decode("\xbb\xbf\xc7\x0a\x3d\x02\xd1\x07\x18"));         // an object of 13·10¹⁸ members
+  EXPECT_FALSE(decode(std::string(3000000, static_cast<char>(0x81))));  // lists of one list each
+}
+
 TEST(Journal, GivesBackEveryBitOfEveryEntry) {
   const auto entries = session();
   const auto contents = read(file_of(entries), "j");

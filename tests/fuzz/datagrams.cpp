@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer entry for all that comes off the network: the input is a row of {u16 length, u8 sender, u8 wait in 10 ms,
-// datagram}. protocol_fuzz_test feeds it seeded mutations in every build; with clang and -DKINEMAP_FUZZ=ON it is a
-// fuzzer of its own.
+// All that comes off the network: the input is a row of {u16 length, u8 sender, u8 wait in 10 ms, datagram}.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

@@ -112,5 +112,115 @@ TEST(LiveCli, StatusMapAndWatchFollowAWearer) {
   fs::remove_all(root);
 }
 
+/// Holds a UDP port of this machine, or sends to one.
+class UdpSocket {
+ public:
+  explicit UdpSocket(int port) {
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address_.sin_port = htons(static_cast<std::uint16_t>(port));
+  }
+  ~UdpSocket() { ::close(socket_); }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  void hold() { ASSERT_EQ(::bind(socket_, reinterpret_cast<sockaddr*>(&address_), sizeof address_), 0); }
+  void send(const std::string& text) {
+    ::sendto(socket_, text.data(), text.size(), 0, reinterpret_cast<sockaddr*>(&address_), sizeof address_);
+  }
+
+ private:
+  int socket_ = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address_{};
+};
+
+/// A configuration of its own, and what `kinemap doctor` finds with it.
+struct Doctor {
+  fs::path root = fs::temp_directory_path() / ("kinemap-doctor-test-" + std::to_string(::getpid()));
+  int suit = free_port(SOCK_DGRAM), port = free_port(SOCK_STREAM);
+  std::string config = (root / "config.json").string();
+  Json settings = {{"suit", {{"address", "127.0.0.1"}, {"port", suit}}},
+                   {"api", {{"port", port}}},
+                   {"journal", {{"directory", (root / "journal").string()}}}};
+
+  Doctor() {
+    fs::create_directories(root);
+    save();
+  }
+  ~Doctor() { fs::remove_all(root); }
+  Doctor(const Doctor&) = delete;
+  Doctor& operator=(const Doctor&) = delete;
+  void save() const { std::ofstream(config) << settings; }
+  /// The findings by subject; and the exit code as "code".
+  [[nodiscard]] Json ask(const std::string& listen_s) const {
+    const Ran ran = run_command({KINEMAP_BIN, "doctor", "--config", config, "--listen", listen_s, "--json"});
+    Json by_subject = {{"code", ran.code}};
+    const Json findings = Json::parse(ran.out)["findings"];
+    for (const Json& finding : findings) by_subject[finding["subject"].get<std::string>()] = finding;
+    return by_subject;
+  }
+};
+
+bool says(const Json& finding, const std::string& verdict, const std::string& text) {
+  return finding["verdict"] == verdict && finding.dump().find(text) != std::string::npos;
+}
+
+TEST(Doctor, WithoutADaemonItListensItself) {
+  const Doctor doctor;
+  const Json silent = doctor.ask("0.2");
+  EXPECT_EQ(silent["code"], 1);
+  EXPECT_TRUE(says(silent["config"], "ok", doctor.config)) << silent;
+  EXPECT_TRUE(says(silent["daemon"], "problem", "systemctl start kinemapd")) << silent;
+  EXPECT_TRUE(says(silent["suit"], "problem", "port " + std::to_string(doctor.suit))) << silent;
+  EXPECT_TRUE(says(silent["suit"], "problem", "Network Streamer")) << silent;
+  EXPECT_TRUE(says(silent["disk"], "ok", "GiB free")) << silent;
+  for (const char* subject : {"service", "firewall", "buffer", "clock"}) EXPECT_TRUE(silent.contains(subject));
+
+  {
+    const std::jthread sender([&](const std::stop_token& stop) {
+      for (UdpSocket socket(doctor.suit); !stop.stop_requested();
+           std::this_thread::sleep_for(std::chrono::milliseconds(20)))
+        socket.send("not the suit's stream, whatever it is");
+    });
+    EXPECT_TRUE(says(doctor.ask("30")["suit"], "problem", "not MVN's stream"));
+  }
+  {
+    UdpSocket other(doctor.suit);
+    other.hold();
+    EXPECT_TRUE(says(doctor.ask("0.2")["suit"], "problem", "ss -lunp"));
+  }
+  const Background sim({KINEMAP_BIN, "sim", "--udp", "127.0.0.1:" + std::to_string(doctor.suit)},
+                       (doctor.root / "sim.log").string());
+  EXPECT_TRUE(says(doctor.ask("30")["suit"], "ok", "MVN's stream comes"));
+}
+
+TEST(Doctor, AsksTheRunningDaemon) {
+  const Doctor doctor;
+  const Background daemon({KINEMAPD_BIN, "--config", doctor.config}, (doctor.root / "daemon.log").string());
+  // Not by asking the doctor: while there is no daemon, it holds the suit's port itself.
+  const auto answers = [&] {
+    return run_command({KINEMAP_BIN, "status", "--url", "127.0.0.1:" + std::to_string(doctor.port)}).code == 0;
+  };
+  ASSERT_TRUE(within(std::chrono::seconds(30), answers)) << slurp((doctor.root / "daemon.log").string());
+  EXPECT_TRUE(says(doctor.ask("0.1")["daemon"], "ok", "kinemapd"));
+  const Json silent = doctor.ask("0.1");
+  EXPECT_EQ(silent["code"], 1);
+  EXPECT_TRUE(says(silent["suit"], "problem", "nothing has come")) << silent;
+  const Background sim({KINEMAP_BIN, "sim", "--udp", "127.0.0.1:" + std::to_string(doctor.suit)},
+                       (doctor.root / "sim.log").string());
+  EXPECT_TRUE(
+      within(std::chrono::seconds(30), [&] { return says(doctor.ask("0.1")["suit"], "ok", "frames a second"); }));
+  EXPECT_EQ(doctor.ask("0.1")["code"], 0) << "notes are no problems";
+}
+
+TEST(Doctor, ConfigurationAndDisk) {
+  Doctor doctor;
+  doctor.settings["journal"]["min_free_mb"] = 1e9;
+  doctor.save();
+  EXPECT_TRUE(says(doctor.ask("0.1")["disk"], "problem", "journal.min_free_mb"));
+  doctor.settings["suit"]["prot"] = 1;
+  doctor.save();
+  EXPECT_TRUE(says(doctor.ask("0.1")["config"], "problem", "suit.prot"));
+}
+
 }  // namespace
 }  // namespace kinemap

@@ -21,6 +21,7 @@ void add_map(CLI::App& app, Run& run);
 void add_objects(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_status(CLI::App& app, Run& run);
+void add_doctor(CLI::App& app, Run& run);
 void add_watch(CLI::App& app, Run& run);
 void add_optimize(CLI::App& app, Run& run);
 void add_sessions(CLI::App& app, Run& run);

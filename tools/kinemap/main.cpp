@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
       "\n'kinemap COMMAND --help' explains each command. Exit codes: 0 done, 1 bad input or failure, 2 wrong usage or "
       "configuration.");
   Run run;
-  for (const auto add : {add_sim, add_replay, add_build, add_map, add_objects, add_export, add_status, add_watch,
-                         add_sessions, add_optimize, add_eval, add_pair, add_shell})
+  for (const auto add : {add_sim, add_replay, add_build, add_map, add_objects, add_export, add_status, add_doctor,
+                         add_watch, add_sessions, add_optimize, add_eval, add_pair, add_shell})
     add(app, run);
   const auto is_asked = [&](const CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_asked).empty())

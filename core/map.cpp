@@ -6,6 +6,7 @@
 namespace kinemap {
 namespace {
 constexpr const char* kNames[] = {"wall", "table", "screen", "chair"};
+constexpr const char* kEnds[] = {"corner", "inferred", "open"};
 constexpr const char* kHandParts[] = {"tips", "palm"};
 
 template <class Enum, std::size_t N>
@@ -19,6 +20,10 @@ std::optional<Enum> find(const std::string& name, const char* const (&names)[N])
 const char* to_string(ObjectType type) { return kNames[static_cast<std::size_t>(type)]; }
 
 std::optional<ObjectType> object_type_from(const std::string& name) { return find<ObjectType>(name, kNames); }
+
+const char* to_string(EndKind kind) { return kEnds[static_cast<std::size_t>(kind)]; }
+
+std::optional<EndKind> end_kind_from(const std::string& name) { return find<EndKind>(name, kEnds); }
 
 const char* to_string(HandPart part) { return kHandParts[static_cast<std::size_t>(part)]; }
 

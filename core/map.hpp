@@ -18,6 +18,15 @@ enum class ObjectType : std::uint8_t { Wall, Table, Screen, Chair };
 const char* to_string(ObjectType type);
 std::optional<ObjectType> object_type_from(const std::string& name);
 
+/// Why a wall ends where it does.
+enum class EndKind : std::uint8_t {
+  Corner,    ///< it meets the next wall
+  Inferred,  ///< it meets a wall that nobody touched, but that must be there
+  Open       ///< there the hand last touched it; nobody knows what comes then: the wall may be longer
+};
+const char* to_string(EndKind kind);  ///< "corner", "inferred", "open"
+std::optional<EndKind> end_kind_from(const std::string& name);
+
 struct PlaneEquation {
   Eigen::Vector3d normal;  ///< unit, map frame; towards the side from which the surface was touched
   double offset = 0.0;     ///< n·p = offset, m
@@ -49,8 +58,12 @@ struct MapObject {
   int observations = 0;
   double first_seen_s = 0.0;
   double last_seen_s = 0.0;
-  std::vector<Visit> visits;    ///< by ascending time; empty: not known
-  bool height_assumed = false;  ///< walls: the height was not observed
+  std::vector<Visit> visits;                   ///< by ascending time; empty: not known
+  bool height_assumed = false;                 ///< walls: the height was not observed
+  std::optional<std::array<EndKind, 2>> ends;  ///< walls: at corners[0] and at corners[1]
+
+  /// A wall of which an end was not seen: `size` is the least that it can be.
+  [[nodiscard]] bool open_ended() const { return ends && ((*ends)[0] == EndKind::Open || (*ends)[1] == EndKind::Open); }
 };
 
 /// A closed ring of walls, seen from inside. Side k goes from corner k to the next one.
@@ -129,7 +142,7 @@ struct MapSnapshot {
   std::vector<Doorway> doorways;
   std::vector<TrajectoryPose> trajectory;
   std::vector<UnresolvedTrace> unresolved;
-  Pose T_map_odom;                   ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
+  Pose T_map_odom;  ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
   /// Of the newest key pose: position (m) and rotation vector (rad) about the pelvis, both in the map's axes.
   std::optional<Eigen::Matrix<double, 6, 6>> pelvis_covariance;
   std::optional<TouchingHand> hand;  ///< absent until something was touched

@@ -89,6 +89,7 @@ Json to_json(const MapObject& object) {
   }
   if (object.size) json["size"] = array_of(*object.size);
   if (object.height_assumed) json["height_assumed"] = true;
+  if (object.ends) json["ends"] = {to_string((*object.ends)[0]), to_string((*object.ends)[1])};
   if (Json sigma = sigma_json(object); !sigma.empty()) json["sigma"] = std::move(sigma);
   json["observations"] = object.observations;
   json["first_seen"] = rounded(object.first_seen_s);

@@ -64,6 +64,16 @@ MapObject read_object(const JsonCursor& json) {
   object.pose = read_pose(json.at("pose"));
   read_extent(json, object);
   object.height_assumed = json.boolean_or_false("height_assumed");
+  if (json.has("ends")) {
+    object.ends.emplace();
+    std::size_t i = 0;
+    for (const JsonCursor& end : json.at("ends").items(2)) {
+      if (const auto kind = end_kind_from(end.string()))
+        (*object.ends)[i++] = *kind;
+      else
+        end.fail("expected \"corner\", \"inferred\" or \"open\"");
+    }
+  }
   if (json.has("sigma")) object.sigma = read_sigma(json.at("sigma"));
   object.observations = static_cast<int>(json.at("observations").count(INT32_MAX));
   object.first_seen_s = json.at("first_seen").number();

@@ -101,6 +101,7 @@ void describe_wall(const MapState& state, const FiniteWall& wall, const MapperCo
                  upright_orientation(frame.normal, Eigen::Vector3d::UnitZ())};
   object.size = {wall.length(), height};
   object.height_assumed = true;
+  object.ends = {wall.tail.kind, wall.head.kind};
   object.corners = {at(wall.tail.s, floor_z), at(wall.head.s, floor_z), at(wall.head.s, floor_z + height),
                     at(wall.tail.s, floor_z + height)};
   object.plane = plane_through(object.pose.p, frame.normal);

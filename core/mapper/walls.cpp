@@ -152,8 +152,8 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
     const Interval& ends = chain.plane.touched;
     walls.push_back({chain.plane.landmark,
                      chain.landmarks,
-                     {ends.lo, EndKind::Touched, {}, kTouchedSigma},
-                     {ends.hi, EndKind::Touched, {}, kTouchedSigma}});
+                     {ends.lo, EndKind::Open, {}, kTouchedSigma},
+                     {ends.hi, EndKind::Open, {}, kTouchedSigma}});
   }
   for (std::size_t a = 0; a < chains.size(); ++a) {
     const auto meets = next[chains[a].last];

@@ -5,22 +5,16 @@
 #include <optional>
 #include <vector>
 
+#include "core/map.hpp"
 #include "core/mapper/config.hpp"
 #include "core/mapper/state.hpp"
 
 namespace kinemap {
 
-/// Why a wall ends where it does.
-enum class EndKind : std::uint8_t {
-  Touched,  ///< there the hand last touched it; nobody knows what comes then
-  Corner,   ///< it meets the next wall
-  Inferred  ///< it meets a wall that nobody touched, but that must be there
-};
-
 /// One end of a finite wall.
 struct WallEnd {
   double s = 0.0;  ///< coordinate along the wall's WallFrame, m
-  EndKind kind = EndKind::Touched;
+  EndKind kind = EndKind::Open;
   std::optional<std::size_t> neighbour;  ///< index of the wall that comes next; an inferred one may lie in between
   double sigma_m = 0.0;                  ///< what the end adds to the uncertainty of the wall's length
 };

@@ -50,7 +50,7 @@ std::string rooms_of(const MapSnapshot& map, const MapObject& object) {
 
 std::string objects_csv(const MapSnapshot& map) {
   std::string csv =
-      "id,type,functions,rooms,x_m,y_m,z_m,heading_deg,length_m,width_or_height_m,height_assumed,"
+      "id,type,functions,rooms,x_m,y_m,z_m,heading_deg,length_m,width_or_height_m,height_assumed,open_ended,"
       "sigma_position_m,sigma_heading_deg,sigma_length_m,sigma_width_or_height_m,observations,first_seen_s,"
       "last_seen_s\r\n";
   for (const MapObject& object : map.objects) {
@@ -69,6 +69,7 @@ std::string objects_csv(const MapSnapshot& map) {
         object.size ? number((*object.size)[0]) : "",
         object.size ? number((*object.size)[1]) : "",
         object.size && object.type == ObjectType::Wall ? (object.height_assumed ? "true" : "false") : "",
+        object.ends ? (object.open_ended() ? "true" : "false") : "",
         sigma(s.position_m),
         sigma(s.heading_rad, kDegrees, 1),
         sigma(s.size_m[0]),

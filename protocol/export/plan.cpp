@@ -33,7 +33,7 @@ Eigen::Vector2d turned(const Eigen::Vector2d& p, double angle) {
 
 std::string size_label(const MapObject& object) {
   if (!object.size) return "";
-  if (object.type == ObjectType::Wall) return format("%.2f m", (*object.size)[0]);
+  if (object.type == ObjectType::Wall) return format("%s%.2f m", object.open_ended() ? "≥ " : "", (*object.size)[0]);
   return format("%.2f × %.2f m", (*object.size)[0], (*object.size)[1]);
 }
 
@@ -41,6 +41,7 @@ std::string size_label(const MapObject& object) {
 std::string detail_of(const MapObject& object) {
   std::string text = format("%s %u", to_string(object.type), object.id);
   if (object.size) text += format(", %.2f × %.2f m", (*object.size)[0], (*object.size)[1]);
+  if (object.open_ended()) text += " (an end was not touched: at least so long)";
   if (object.height_assumed) text += " (height assumed)";
   if (object.type == ObjectType::Chair || object.type == ObjectType::Table)
     text += format(", %.2f m high", object.pose.p.z());

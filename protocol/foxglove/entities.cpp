@@ -127,7 +127,7 @@ Json metadata(const MapObject& object) {
   Json list = Json::array();
   const Json values = to_json(object);
   for (const char* key :
-       {"type", "functions", "size", "height_assumed", "sigma", "observations", "first_seen", "last_seen"})
+       {"type", "functions", "size", "height_assumed", "ends", "sigma", "observations", "first_seen", "last_seen"})
     if (const auto value = values.find(key); value != values.end())
       list.push_back({{"key", key}, {"value", value->is_string() ? value->get<std::string>() : text_of(*value)}});
   return list;

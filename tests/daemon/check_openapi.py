@@ -75,7 +75,7 @@ def main():
     document, faults = recorded["openapi"], []
     faults += document_faults(document)
     answered, optional = set(), {"hand", "doorways", "unresolved", "run", "note", "covariance", "journal", "sigma", "visits", "plane", "corners", "size",
-                                 "height_assumed", "inferred_sides"}
+                                 "height_assumed", "ends", "inferred_sides"}
     for answer in recorded["answers"]:
         where = f"{answer['path']} {answer['question']} ({answer['status']})"
         check = validator(document, schema_of(document, answer))

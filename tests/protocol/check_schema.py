@@ -29,6 +29,7 @@ def spoilt(whole):
     yield change(["objects", 0, "size"], None)
     yield change(["objects", 1, "corners"], [[0, 0, 0]])
     yield change(["objects", 1, "height_assumed"], False)
+    yield change(["objects", 0, "ends"], ["corner", "door"])
     yield change(["objects", 1, "colour"], "red")
     yield change(["rooms", 0, "polygon"], [[0, 0], [1, 1]])
     yield change(["graph", "contacts"], -1)

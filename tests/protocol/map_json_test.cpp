@@ -29,6 +29,7 @@ TEST(MapJson, HoldsWhatTheMapHolds) {
   EXPECT_EQ(wall["size"], Json::array({3.0, 2.5}));
   EXPECT_EQ(wall["plane"]["offset"], -4.0);
   EXPECT_EQ(wall["height_assumed"], true);
+  EXPECT_EQ(wall["ends"], Json::array({"corner", "open"}));
   EXPECT_EQ(wall["corners"].size(), 4U);
   EXPECT_EQ(json["rooms"][0]["polygon"].size(), 6U);
   EXPECT_EQ(json["unresolved"][0]["reason"], "neither closed nor long");
@@ -96,6 +97,7 @@ TEST(MapJson, ErrorsNameTheKeyPath) {
       {"/objects/2/pose/orientation", Json::array({1, 1, 0, 0}),
        "objects[2].pose.orientation: expected a unit quaternion"},
       {"/objects/0/corners/3/0", "x", "objects[0].corners[3][0]: expected a number"},
+      {"/objects/0/ends/1", "door", "objects[0].ends[1]: expected \"corner\", \"inferred\" or \"open\""},
       {"/objects/0/height_assumed", 1, "objects[0].height_assumed: expected true or false"},
       {"/rooms", Json::object(), "rooms: expected an array"},
       {"/hand/part", "elbow", "hand.part: expected \"tips\" or \"palm\", got \"elbow\""},

@@ -19,6 +19,7 @@ inline MapSnapshot sample_map() {
   wall.corners = {{{4.0, 0.0, 0.0}, {4.0, 3.0, 0.0}, {4.0, 3.0, 2.5}, {4.0, 0.0, 2.5}}};
   wall.size = {3.0, 2.5};
   wall.height_assumed = true;
+  wall.ends = {EndKind::Corner, EndKind::Open};
   wall.sigma = {0.03, 0.01, {0.05, 0.0}};  // the height's is unknown
   wall.observations = 3;
   wall.first_seen_s = 12.5;

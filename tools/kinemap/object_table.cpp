@@ -11,7 +11,8 @@ namespace {
 
 std::string size_text(const MapObject& object) {
   if (!object.size) return "";
-  return format("%.2f × %.2f%s", (*object.size)[0], (*object.size)[1], object.height_assumed ? "*" : "");
+  return format("%s%.2f × %.2f%s", object.open_ended() ? "≥ " : "", (*object.size)[0], (*object.size)[1],
+                object.height_assumed ? "*" : "");
 }
 
 std::string heading_text(const MapObject& object) {

@@ -20,6 +20,8 @@ export interface MapObject {
   corners?: Vec3[];
   size?: Vec2;
   height_assumed?: boolean;
+  /** Walls: why it ends at the first and second of its corners; "open": nobody touched it any farther. */
+  ends?: ("corner" | "inferred" | "open")[];
   sigma?: { position?: number; heading?: number; size?: number[] };
   observations: number;
   first_seen: number;

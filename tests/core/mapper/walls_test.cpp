@@ -195,12 +195,12 @@ TEST(CutWalls, AnEndThatMeetsNobodyStaysWhereItWasTouched) {
   visit.touch({0, 0}, {3, 0});
   const auto alone = cut_walls(visit.state, kConfig);
   expect_lengths(alone, {3});
-  EXPECT_EQ(alone[0].head.kind, EndKind::Touched);
+  EXPECT_EQ(alone[0].head.kind, EndKind::Open);
   EXPECT_GT(alone[0].head.sigma_m, 0.0);
   EXPECT_TRUE(rooms_of(visit).empty());
   const double far = 3 + kConfig.join_max_m + 0.5;  // too far to be prolonged to
   visit.touch({far, 0.3}, {far, 2});
-  EXPECT_EQ(cut_walls(visit.state, kConfig)[0].head.kind, EndKind::Touched);
+  EXPECT_EQ(cut_walls(visit.state, kConfig)[0].head.kind, EndKind::Open);
 }
 
 TEST(CutWalls, TwoWallsAndACornerAreNoRoom) {
@@ -210,7 +210,7 @@ TEST(CutWalls, TwoWallsAndACornerAreNoRoom) {
   const auto walls = cut_walls(visit.state, kConfig);
   expect_lengths(walls, {3.6, 2.5});
   EXPECT_EQ(walls[0].head.kind, EndKind::Corner);
-  EXPECT_EQ(walls[1].head.kind, EndKind::Touched);
+  EXPECT_EQ(walls[1].head.kind, EndKind::Open);
   EXPECT_TRUE(rooms_of(visit).empty());
 }
 

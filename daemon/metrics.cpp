@@ -63,7 +63,6 @@ void write_stream(MetricsText& out, const Status& status) {
   write_kind(out, stream, StreamCounter::Kind::Dropped, "cause");
   out.sample({{"cause", "kernel_buffer_full"}}, status.suit.counts.kernel_drops);
   out.sample({{"cause", "truncated"}}, status.suit.counts.truncated);
-  out.sample({{"cause", "not_allowed"}}, status.suit.counts.not_allowed);
   out.counter("kinemap_frames_lost_total", "Frames that the map did not get, by cause; ring_full is our own fault.");
   write_kind(out, stream, StreamCounter::Kind::LostFrame, "cause");
   out.sample({{"cause", "ring_full"}}, status.pipeline.frames.refused);
@@ -156,6 +155,19 @@ void write_journal(MetricsText& out, const PipelineStats& pipeline) {
   out.gauge("kinemap_journal_longest_sync_seconds", "The longest of these.", journal.longest_sync_s);
 }
 
+void write_recording(MetricsText& out, const PipelineStats& pipeline) {
+  if (!pipeline.has_recorder) return;
+  const RecorderStats& recorder = pipeline.recorder;
+  out.gauge("kinemap_recording_healthy",
+            "0 while the disk does not take the suit's datagrams, or has no room for more.",
+            std::uint64_t{recorder.healthy});
+  out.gauge("kinemap_recording_waiting_bytes", "What the disk has not taken yet.", recorder.waiting_bytes);
+  out.counter("kinemap_recording_files_total", "Files begun.", recorder.files);
+  out.counter("kinemap_recording_bytes_total", "Length of all of them.", recorder.bytes);
+  out.counter("kinemap_recording_datagrams_total", "Datagrams recorded.", recorder.datagrams);
+  out.counter("kinemap_recording_dropped_total", "Datagrams that are not in the recording.", recorder.dropped);
+}
+
 void write_clients(MetricsText& out, const ApiCounts& api) {
   out.gauge("kinemap_clients", "Connections open now.");
   out.sample({{"kind", "http"}}, api.connections - std::min(api.connections, api.streams));
@@ -168,15 +180,6 @@ void write_clients(MetricsText& out, const ApiCounts& api) {
               api.messages_skipped);
   out.counter("kinemap_stream_slow_clients_closed_total", "Clients that were too slow for too long.",
               api.slow_clients_closed);
-  out.counter("kinemap_slow_requests_closed_total", "Connections whose handshake or header did not come in time.",
-              api.slow_requests_closed);
-  out.counter("kinemap_connections_gave_way_total", "Connections that asked for nothing when there were too many.",
-              api.gave_way);
-  out.counter("kinemap_handshakes_failed_total", "TLS handshakes that failed.", api.handshakes_failed);
-  out.counter("kinemap_requests_unauthorized_total", "Requests without a token that lets them in.", api.unauthorized);
-  out.counter("kinemap_requests_forbidden_total",
-              "Requests refused for their host, their origin or for being in the clear.", api.forbidden);
-  out.counter("kinemap_requests_throttled_total", "Requests beyond api.max_requests_per_s.", api.throttled);
 }
 
 }  // namespace
@@ -192,6 +195,7 @@ std::string metrics_text(const Status& status, const LiveBody& body) {
   write_map(out, status);
   write_drift(out, *status.map, body);
   write_journal(out, status.pipeline);
+  write_recording(out, status.pipeline);
   write_clients(out, status.api);
   return out.take();
 }

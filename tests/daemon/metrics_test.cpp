@@ -39,6 +39,7 @@ Status sample_status() {
   status.suit.counts.last_frame_s = 9.5;
   status.map = std::make_shared<const MapSnapshot>(sample_map());
   status.pipeline.has_journal = true;
+  status.pipeline.has_recorder = true;
   for (const double seconds : {3e-6, 4e-6, 20.0}) status.pipeline.tracker_steps.add(seconds);
   status.pipeline.solver.events.add(0.25);
   return status;
@@ -111,6 +112,10 @@ TEST(Metrics, NoCounterIsLeftOut) {
   auto& journal = status.pipeline.journal;
   for (auto* one : {&journal.entries, &journal.bytes, &journal.waiting_bytes, &journal.lost_entries, &journal.syncs})
     numbers.push_back(*one = 5'000'000 + numbers.size());
+  status.pipeline.has_recorder = true;
+  auto& recorder = status.pipeline.recorder;
+  for (auto* one : {&recorder.datagrams, &recorder.dropped, &recorder.files, &recorder.bytes, &recorder.waiting_bytes})
+    numbers.push_back(*one = 7'000'000 + numbers.size());
   auto& api = status.api;
   for (auto* one : {&api.streams, &api.accepted, &api.refused, &api.requests, &api.errors, &api.messages_skipped,
                     &api.slow_clients_closed})

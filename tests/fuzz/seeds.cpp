@@ -80,7 +80,7 @@ void write_journal(const fs::path& folder) {
   next.time_s = 1.0;
   next.field_disturbed = true;
   const std::vector<journal::Entry> entries{
-      journal::SessionStart{"20261122T103303Z", 1795343583000, "0.1.0"},
+      journal::SessionStart{"20261122T103303Z", 1795343583000, "0.1.0", 2U},
       WearerInfo{"Ada", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.7},
       pose,
       Trace{0.0, 2.0, 1.7, {{0.5, 0, pose.T_odom_pelvis}, {0.6, 0, pose.T_odom_pelvis}}},

@@ -36,7 +36,7 @@ class Pair : public testing::Test {
     options.insert(options.begin(), {KINEMAP_BIN, "pair", "--config", config_});
     return run_command(options);
   }
-  [[nodiscard]] Json paired(std::vector<std::string> options = {}) const {
+  Json paired(std::vector<std::string> options = {}) const {
     options.emplace_back("--json");
     const Ran ran = pair(options);
     EXPECT_EQ(ran.code, 0) << ran.err;
@@ -107,10 +107,10 @@ TEST_F(Pair, OpensTheDaemonToWhoHasTheTokenAndKnowsTheCertificate) {
   };
   EXPECT_EQ(map({"--token", token, "--fingerprint", fingerprint}).code, 0);
   EXPECT_EQ(map({"--token", token, "--ca", folder_ / "kinemap/kinemap.crt"}).code, 0);
-  EXPECT_EQ(run_command({"/usr/bin/env", "KINEMAP_URL=" + url, "KINEMAP_TOKEN=" + token,
-                         "KINEMAP_FINGERPRINT=" + fingerprint, KINEMAP_BIN, "watch", "--once"})
-                .code,
-            0);
+  const Ran stream =
+      run_command({"/usr/bin/env", "KINEMAP_URL=" + url, "KINEMAP_TOKEN=" + token, "KINEMAP_FINGERPRINT=" + fingerprint,
+                   "timeout", "--signal=INT", "5", KINEMAP_BIN, "watch", "--json"});
+  EXPECT_THAT(stream.out, HasSubstr("kinemap/map")) << stream.err;
   EXPECT_THAT(map({"--fingerprint", fingerprint}).err, HasSubstr("put its token into KINEMAP_TOKEN"));
   EXPECT_THAT(map({"--token", token}).err, HasSubstr("--fingerprint"));
   const std::string wrong = (fingerprint[0] == '0' ? "1" : "0") + fingerprint.substr(1);

@@ -168,7 +168,11 @@ std::unique_ptr<Server> open_server(Sources sources) {
   return started.index() == 0 ? std::get<0>(std::move(started)) : nullptr;
 }
 
-cli::DaemonAddress address_of(const Server& server) { return {{"127.0.0.1", server.port()}, "", ""}; }
+cli::DaemonAddress address_of(const Server& server) {
+  cli::DaemonAddress address;
+  address.endpoint = {"127.0.0.1", server.port()};
+  return address;
+}
 
 /// Without and with clients by turns, so that a drift of the machine does not count.
 Result<Figures> measure(const Session& session, const Options& options) {

@@ -70,7 +70,7 @@ TEST(ObjectsCsv, QuotesWhatNeedsIt) {
   const std::string csv = objects_csv(map);
   EXPECT_THAT(csv, HasSubstr("7,chair,\"sit; say \"\"a, b\"\"\",1,2.000,0.200,0.460,90.0,,,,"));
   EXPECT_THAT(csv,
-              HasSubstr("1,wall,bound,1,4.000,1.500,1.250,180.0,3.000,2.500,true,0.030,0.6,0.050,,3,12.500,170.000"));
+              HasSubstr("1,wall,bound,1,4.000,1.500,1.250,180.0,3.000,2.500,true,true,0.030,0.6,0.050,,3,12.500,170.000"));
 }
 
 }  // namespace

@@ -128,7 +128,7 @@ TEST_F(Cli, WrongUsageIsTwo) {
   expect_refusal({"export"}, 2, "--list");
   expect_refusal({"export", "plan.sgv"}, 2, "plan.sgv");
   expect_refusal({"export", "all", "--out", "-"}, 2, "--out -");
-  expect_refusal({"status", "--url", "https://h"}, 2, "https is not supported yet");
+  expect_refusal({"status", "--url", "ftp://h"}, 2, "expected http://HOST:PORT or https://HOST:PORT");
   expect_refusal({"objects", "--url", "ftp://h"}, 2, "ftp://");
   EXPECT_FALSE(fs::exists(at("x")));
 }
@@ -158,7 +158,8 @@ TEST_F(Cli, BuildNamesWhatIsWrongWithTheInput) {
   expect_refusal({"build", at("empty.pcap"), "--out", at("o")}, 1, at("empty.pcap"));
   expect_refusal({"build", at("garbage.pcap"), "--out", at("o")}, 1, at("garbage.pcap"));
   expect_refusal({"build", at("no_wearer.pcap"), "--out", at("o")}, 1, at("no_wearer.pcap"));
-  expect_refusal({"build", at("session"), "--out", at("o")}, 1, at("session"));
+  fs::create_directory(at("nothing"));
+  expect_refusal({"build", at("nothing"), "--out", at("o")}, 1, at("nothing"));
   EXPECT_TRUE(fs::is_empty(at("o"))) << "no map of nothing";
 }
 

@@ -175,7 +175,7 @@ bool is_well_formed(const std::string& xml) {
 TEST(Plan, SvgIsWellFormedAndNamesAllObjects) {
   const std::string svg = plan_svg(sample_map());
   EXPECT_TRUE(is_well_formed(svg));
-  for (const char* text : {"W1 · 3.00 m", "T2", "1.60 × 0.80 m", "S5 · 1.00 × 0.60 m", "C7", "10.0 m²", "2 m"})
+  for (const char* text : {"W1 · ≥ 3.00 m", "T2", "1.60 × 0.80 m", "S5 · 1.00 × 0.60 m", "C7", "10.0 m²", "2 m"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_TRUE(is_well_formed(plan_svg(MapSnapshot{})));

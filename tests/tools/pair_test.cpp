@@ -113,7 +113,8 @@ TEST_F(Pair, OpensTheDaemonToWhoHasTheTokenAndKnowsTheCertificate) {
   EXPECT_THAT(stream.out, HasSubstr("kinemap/map")) << stream.err;
   EXPECT_THAT(map({"--fingerprint", fingerprint}).err, HasSubstr("put its token into KINEMAP_TOKEN"));
   EXPECT_THAT(map({"--token", token}).err, HasSubstr("--fingerprint"));
-  const std::string wrong = (fingerprint[0] == '0' ? "1" : "0") + fingerprint.substr(1);
+  std::string wrong = fingerprint;
+  wrong[0] = wrong[0] == '0' ? '1' : '0';
   EXPECT_THAT(map({"--token", token, "--fingerprint", wrong}).err, HasSubstr("its certificate is another one"));
   EXPECT_EQ(map({"--token", token, "--fingerprint", "12:34"}).code, 2);
   EXPECT_THAT(kinemap({"map", "--url", "http://192.0.2.1", "--token", token}).err, HasSubstr("not sent in the clear"));

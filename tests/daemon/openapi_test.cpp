@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -21,8 +22,17 @@ using Json = nlohmann::ordered_json;
 struct World {
   Latest<MapSnapshot> map{std::make_shared<const MapSnapshot>()};
   LiveBody body;
+  std::mutex notices_mutex;
   std::vector<Notice> notices;
+
+  void happen(const std::vector<Notice>& what) {
+    const std::lock_guard lock(notices_mutex);
+    notices = what;
+  }
 };
+
+const std::vector<Notice> kNotices{{Notice::Kind::Trace, 1.0, 2.0, 17, 0.0},
+                                   {Notice::Kind::Sitting, 1.0, 2.0, 0, 0.45}};
 
 Sources sources_of(World& world) {
   Sources sources;
@@ -41,6 +51,7 @@ Sources sources_of(World& world) {
     return stats;
   };
   sources.take_notice = [&]() -> std::optional<Notice> {
+    const std::lock_guard lock(world.notices_mutex);
     if (world.notices.empty()) return std::nullopt;
     const Notice notice = world.notices.back();
     world.notices.pop_back();
@@ -54,7 +65,7 @@ void fill(World& world) {
   map.pelvis_covariance.emplace(Eigen::Matrix<double, 6, 6>::Identity());
   world.map.set(std::make_shared<const MapSnapshot>(map));
   world.body = test::body_at(1.5, {1, 2, 1});
-  world.notices = {{Notice::Kind::Trace, 1.0, 2.0, 17, 0.0}, {Notice::Kind::Sitting, 1.0, 2.0, 0, 0.45}};
+  world.happen(kNotices);
 }
 
 /// What each route is asked, where asking it plainly says too little; {…} of a path must be here.
@@ -103,6 +114,7 @@ Json messages_of(std::uint16_t port, World& world) {
   client.send(R"({"op":"query","id":"a","path":"nothing"})");
   client.send("nonsense");
   while (topics.size() < 8) {
+    world.happen(kNotices);  // again and again: only who has subscribed hears of it
     messages.push_back(Json(client.receive()));
     const Json& message = messages.back();
     if (message.contains("closed")) break;

@@ -231,7 +231,7 @@ class Drawing {
                               static_cast<unsigned long long>(plan_.revision), scale());
     const auto has = [&](auto predicate) { return std::any_of(plan_.walls.begin(), plan_.walls.end(), predicate); };
     if (has([](const WallStretch& wall) { return wall.wall_id == 0; }))
-      text += " · dashed walls: inferred, not touched";
+      text += " · dashed walls: inferred, not touched · ≥: an end was not touched";
     if (has([](const WallStretch& wall) { return wall.open; }))
       text += format(" · doorways: width not known, drawn %.1f m", kDoorwayWidth);
     page_.text({text}, "note", {{kMargin, page_.height() - 20.0}});

@@ -28,7 +28,7 @@ def draw(directory):
 
 tree = ElementTree.parse(root / "sample/plan.svg").getroot()
 texts = [text.text for text in tree.iter(SVG + "text")]
-for wanted in ("W1 · 3.00 m", "1.60 × 0.80 m", "S5 · 1.00 × 0.60 m", "C7", "Room 1", "10.0 m²", "x", "y"):
+for wanted in ("W1 · ≥ 3.00 m", "1.60 × 0.80 m", "S5 · 1.00 × 0.60 m", "C7", "Room 1", "10.0 m²", "x", "y"):
     assert wanted in texts, f"{wanted} is not among {texts}"
 titles = [title.text for title in tree.iter(SVG + "title")]
 assert "table 2, 1.60 × 0.80 m, 0.74 m high, ± 0.02 m, seen 1 time, for place" in titles, titles

@@ -105,9 +105,10 @@ ClientsReport run_clients(const ClientsPlan& plan) {
 
 Result<ClientsReport> run_clients_apart(const ClientsPlan& plan) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  const std::string command =
-      format("'%s' server-clients --port %u --readers %d --sleepers %d --rate %.17g --seconds %.17g --epoch %.17g",
-             program.c_str(), plan.port, plan.readers, plan.sleepers, plan.rate_hz, plan.seconds, plan.epoch_s);
+  // Clients are on other machines: what they compute is not to be taken from the daemon.
+  const std::string command = format(
+      "nice -n 10 '%s' server-clients --port %u --readers %d --sleepers %d --rate %.17g --seconds %.17g --epoch %.17g",
+      program.c_str(), plan.port, plan.readers, plan.sleepers, plan.rate_hz, plan.seconds, plan.epoch_s);
   FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return Error{"cannot start " + command};
   std::string text;

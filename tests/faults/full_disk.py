@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 
-from kill9 import Daemon, Suit, datagrams, moved
+from kinemapd import Daemon, Suit, datagrams, moved
 
 
 class Disk:

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from kill9 import Daemon, Suit, datagrams
+from kinemapd import Daemon, Suit, datagrams
 
 
 def main():

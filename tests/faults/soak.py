@@ -12,39 +12,17 @@ import base64
 import json
 import os
 import pathlib
-import re
 import socket
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-import urllib.request
+
+from kinemapd import Daemon, open_files
 
 GROWTH_PER_HOUR = 0.05
 SETTLED_S = 3600.0  # of stream
-
-
-class Daemon:
-    def __init__(self, program, config):
-        self.process = subprocess.Popen([program, "--config", config, "--port", "0", "--suit-port", "0"], stderr=subprocess.PIPE, text=True)
-        self.log = []
-        for line in self.process.stderr:
-            self.log.append(line)
-            ready = re.search(r"port (\d+), map at http://[^:]*:(\d+)/", line)
-            if ready:
-                self.suit_port, self.port = int(ready[1]), int(ready[2])
-                break
-        else:
-            sys.exit("kinemapd did not start:\n" + "".join(self.log))
-        threading.Thread(target=lambda: self.log.extend(self.process.stderr), daemon=True).start()
-
-    def get(self, path):
-        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api/v1/{path}", timeout=60) as answer:
-            return json.load(answer)
-
-    def handles(self):
-        return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
 
 class Client(threading.Thread):
@@ -80,7 +58,7 @@ def sample(daemon, begin):
         "stream_s": round(stream["frames"] / 120.0, 1),
         "solved_s": solved["time"],
         "rss_mb": round(rss, 1),
-        "handles": daemon.handles(),
+        "handles": open_files(daemon.process),
         "ring_frames": rings["frames"]["fill"],
         "ring_events": rings["events"]["fill"],
         "dropped": rings["frames"]["dropped"] + status["suit"]["socket"]["kernel_drops"] + stream["late"] + stream["incomplete"],
@@ -133,7 +111,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         config = pathlib.Path(name) / "config.json"
         config.write_text(json.dumps({"journal": {"directory": name + "/state", "min_free_mb": 0}}))
-        daemon = Daemon(arguments.kinemapd, config)
+        daemon = Daemon(arguments.kinemapd, config, answers_within_s=60)
         clients = [Client(daemon.port) for _ in range(2)]
         begin = time.monotonic()
         wearer = subprocess.Popen(

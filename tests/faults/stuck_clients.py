@@ -21,6 +21,8 @@ import tempfile
 import threading
 import time
 
+from kinemapd import open_files
+
 TOKEN = "reader-of-the-fault-campaign"
 UPGRADE = (
     "GET {path}?token=" + TOKEN + " HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
@@ -74,9 +76,6 @@ class Daemon:
             return None
         head, _, body = answer.partition(b"\r\n\r\n")
         return json.loads(body) if head.startswith(b"HTTP/1.1 200") else None
-
-    def files(self):
-        return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
 
 class StuckClient(threading.Thread):
@@ -204,7 +203,7 @@ def main():
         daemon = Daemon(arguments.kinemapd, arguments.kinemap, pathlib.Path(name))
         sim = subprocess.Popen([arguments.kinemap, "sim", "--udp", f"127.0.0.1:{daemon.suit_port}", "--seed", "1"], stdout=subprocess.DEVNULL)
         time.sleep(1.0)
-        before, files = daemon.get("status"), daemon.files()
+        before, files = daemon.get("status"), open_files(daemon.process)
         stop = threading.Event()
         clients = [StuckClient(daemon, i, stop, arguments.seed) for i in range(arguments.clients)]
         for client in clients:
@@ -217,7 +216,7 @@ def main():
         end = time.monotonic() + 90
         while time.monotonic() < end and (after := daemon.get("status")) and after["clients"]["connections"] > 1:
             time.sleep(0.5)
-        left_open = daemon.files() - files
+        left_open = open_files(daemon.process) - files
         sim.kill()
         alive = daemon.process.poll() is None
         daemon.process.kill()

@@ -2,8 +2,6 @@
 #include <boost/beast/core/detect_ssl.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
-#include <iterator>
-#include <list>
 #include <optional>
 #include <utility>
 
@@ -28,15 +26,15 @@ std::optional<ApiError> read_error(ErrorCode error) {
   return std::nullopt;
 }
 
-class HttpSession : public std::enable_shared_from_this<HttpSession>, public Waiting {
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(net::ip::tcp::socket socket, WebContext& context, ConnectionSlot slot)
-      : stream_(std::move(socket)), context_(context), slot_(std::move(slot)) {}
-  ~HttpSession() { stop_waiting(); }
+      : stream_(std::move(socket)), context_(context), slot_(std::move(slot)) {
+    slot_.guest().leave = [this](const ApiError&) { stream_.next_layer().close(); };
+  }
 
   /// The first byte tells TLS from HTTP, which this machine's programs may speak on the same port.
   void start() {
-    wait();
     stream_.next_layer().expires_after(context_.limits.request);
     if (!context_.security.tls) return read();
     beast::async_detect_ssl(stream_.next_layer(), buffer_, [self = shared_from_this()](ErrorCode error, bool is_tls) {
@@ -46,22 +44,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, public Wai
     });
   }
 
-  [[nodiscard]] const Visitor& visitor() const override { return slot_.visitor(); }
-  void give_way() override {
-    waiting_ = false;  // whoever says so has taken it off the list
-    stream_.next_layer().close();
-  }
-
  private:
-  void wait() {
-    if (std::exchange(waiting_, true)) return;
-    context_.waiting.push_back(this);
-    place_ = std::prev(context_.waiting.end());
-  }
-  void stop_waiting() {
-    if (std::exchange(waiting_, false)) context_.waiting.erase(place_);
-  }
-
   void shake_hands() {
     stream_.encrypt(context_.security.tls);
     const auto begun = [self = shared_from_this()](ErrorCode error, std::size_t used) {
@@ -83,7 +66,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, public Wai
   }
 
   void read_next() {
-    wait();
+    slot_.mark(true);
     stream_.next_layer().expires_after(kReadTimeout);
     first_ = false;
     read();
@@ -96,7 +79,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, public Wai
   }
 
   void on_read(ErrorCode error) {
-    stop_waiting();
+    slot_.mark(false);
     if (error) {
       const auto problem = read_error(error);
       if (!problem) {
@@ -109,10 +92,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, public Wai
     const auto& request = parser_->get();
     keep_alive_ = request.keep_alive();
     head_ = request.method() == http::verb::head;
-    if (const auto problem = refusal(request, slot_, stream_.encrypted(), context_)) {
-      keep_alive_ = keep_alive_ && problem->status != 503;
-      return send(context_.api.refuse(*problem));
-    }
+    const auto problem = refusal(request, slot_.guest(), stream_.encrypted(), context_);
+    keep_alive_ = keep_alive_ && !slot_.guest().surplus;
+    if (problem) return send(context_.api.refuse(*problem));
     if (beast::websocket::is_upgrade(request)) return upgrade();
     answer();
   }
@@ -192,9 +174,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession>, public Wai
   NetStream stream_;
   WebContext& context_;
   ConnectionSlot slot_;
-  bool waiting_ = false;
-  std::list<Waiting*>::iterator place_;  // while it waits
-  bool first_ = true;                    // no request has been answered yet
+  bool first_ = true;  // no request has been answered yet
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   HttpAnswer answer_;  // owns the text while it is being sent

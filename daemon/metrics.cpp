@@ -174,6 +174,16 @@ void write_clients(MetricsText& out, const ApiCounts& api) {
   out.sample({{"kind", "websocket"}}, api.streams);
   out.counter("kinemap_connections_accepted_total", "Connections of clients.", api.accepted);
   out.counter("kinemap_connections_refused_total", "Connections beyond api.max_clients.", api.refused);
+  out.counter("kinemap_clients_kept_out_total", "Connections and requests that were closed or not answered, by cause.");
+  const std::array<std::pair<const char*, std::uint64_t>, 8> kept_out{{{"slow_request", api.slow_requests_closed},
+                                                                       {"gave_way", api.gave_way},
+                                                                       {"displaced", api.displaced},
+                                                                       {"revoked", api.revoked},
+                                                                       {"handshake_failed", api.handshakes_failed},
+                                                                       {"unauthorized", api.unauthorized},
+                                                                       {"forbidden", api.forbidden},
+                                                                       {"throttled", api.throttled}}};
+  for (const auto& [cause, count] : kept_out) out.sample({{"cause", cause}}, count);
   out.counter("kinemap_http_requests_total", "Requests over HTTP.", api.requests);
   out.counter("kinemap_http_errors_total", "Answers with a status of 400 and above.", api.errors);
   out.counter("kinemap_stream_messages_skipped_total", "News that slow clients did not get, since newer ones came.",

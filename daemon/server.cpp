@@ -28,8 +28,15 @@ class Server::Impl {
       : api_(std::move(sources), suit, suit_port),
         hub_(api_, config.pose_rate_hz),
         foxglove_(api_),
-        context_{api_,   hub_,   foxglove_, workshop_, std::move(security), Visitors(config.max_requests_per_s),
-                 config, limits, {}} {}
+        context_{api_,
+                 hub_,
+                 foxglove_,
+                 workshop_,
+                 std::move(security),
+                 Visitors(config.max_requests_per_s),
+                 config,
+                 limits,
+                 Guests(api_.counts())} {}
   ~Impl() { io_.stop(); }
 
   ErrorCode bind(const net::ip::address& address, std::uint16_t port) {
@@ -60,6 +67,7 @@ class Server::Impl {
       context_.security = std::move(security);
       context_.visitors.set_rate(config.max_requests_per_s);
       context_.config = config;
+      context_.guests.hold_to(context_.security.policy);
     });
   }
 
@@ -83,37 +91,25 @@ class Server::Impl {
     ErrorCode ignored;
     const auto peer = parse_address(socket.remote_endpoint(ignored).address().to_string());
     if (ignored || !peer) return;  // gone again
-    auto visitor = context_.visitors.of(*peer, Visitors::Clock::now());
-    const bool full = context_.crowded(counts.connections + 1) && !make_room(*visitor);
-    const bool surplus = full || context_.crowded(*visitor, visitor->connections + 1);
-    // Who is too much is told so; beyond twice the limits there is no time for that.
-    if ((full && context_.crowded(counts.connections + 1, 2)) ||
-        context_.crowded(*visitor, visitor->connections + 1, 2)) {
+    ConnectionSlot slot(context_.guests, context_.visitors.of(*peer, Visitors::Clock::now()));
+    if (!seat(slot.guest())) {
       ++counts.refused;
       return;
     }
     socket.set_option(net::ip::tcp::no_delay(true), ignored);
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &kUserTimeoutMs, sizeof kUserTimeoutMs);
-    serve_http(std::move(socket), context_, ConnectionSlot(counts, std::move(visitor), surplus));
+    serve_http(std::move(socket), context_, std::move(slot));
   }
 
-  /// A connection that asks for nothing gives way to one of the same address, or of one that has fewer: the oldest of
-  /// the address that has the most. So who holds many without using them does not keep others out. False when there is
-  /// none.
-  bool make_room(const Visitor& newcomer) {
-    auto& waiting = context_.waiting;
-    const auto fewer = [](const Waiting* a, const Waiting* b) {
-      return a->visitor().connections < b->visitor().connections;
-    };
-    const auto found = std::max_element(waiting.begin(), waiting.end(), fewer);
-    if (found == waiting.end()) return false;
-    const Visitor& most = (*found)->visitor();
-    if (&most != &newcomer && most.connections <= newcomer.connections) return false;
-    ++context_.api.counts().gave_way;
-    Waiting* const one = *found;
-    waiting.erase(found);
-    one->give_way();
-    return true;
+  /// Whether there is a place for who has shown nothing yet. Who is too much may say what he wants, which decides
+  /// (`refusal`); beyond twice the limits there is no time for that.
+  bool seat(Guest& guest) {
+    const Visitor& visitor = *guest.visitor;
+    const auto& counts = api_.counts();
+    if (context_.crowded(visitor, visitor.connections, 2) && !context_.guests.make_room(guest, true)) return false;
+    const bool full = context_.crowded(counts.connections) && !context_.guests.make_room(guest);
+    guest.surplus = full || context_.crowded(visitor, visitor.connections);
+    return !full || !context_.crowded(counts.connections, 2);
   }
 
   void pause(ErrorCode error) {

@@ -37,8 +37,8 @@ class Server {
   [[nodiscard]] bool encrypts() const;
   [[nodiscard]] bool loopback_only() const;
   /// Takes over all but address and port, and reads the files of tokens and TLS again: connections that are open keep
-  /// their certificate, and each request of theirs is held against the new tokens. An Error leaves all as it was. Any
-  /// thread.
+  /// their certificate, each request of theirs is held against the new tokens, and WebSockets that would not be let in
+  /// any more are closed. An Error leaves all as it was. Any thread.
   std::optional<Error> reconfigure(const Config::Api& config);
   /// Why a server so configured would not start, but for its port; it reads the files that are named.
   static std::optional<Error> check(const Config::Api& config);

@@ -148,6 +148,8 @@ Json api_json(const ApiCounts& api) {
           {"slow_clients_closed", api.slow_clients_closed},
           {"slow_requests_closed", api.slow_requests_closed},
           {"gave_way", api.gave_way},
+          {"displaced", api.displaced},
+          {"revoked", api.revoked},
           {"handshakes_failed", api.handshakes_failed},
           {"unauthorized", api.unauthorized},
           {"forbidden", api.forbidden},

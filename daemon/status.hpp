@@ -24,6 +24,8 @@ struct ApiCounts {
   std::uint64_t slow_clients_closed = 0;
   std::uint64_t slow_requests_closed = 0;  ///< whose handshake or header did not come in time
   std::uint64_t gave_way = 0;              ///< connections that asked for nothing, closed when there were too many
+  std::uint64_t displaced = 0;             ///< the same of those in use, for somebody with a better claim
+  std::uint64_t revoked = 0;               ///< WebSockets closed since they would not be let in any more
   std::uint64_t handshakes_failed = 0;     ///< TLS
   std::uint64_t unauthorized = 0;          ///< without a token that is known, or for more than the token allows
   std::uint64_t forbidden = 0;             ///< by host, by origin, in the clear

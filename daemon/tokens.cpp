@@ -26,8 +26,8 @@ bool is_token(const std::string& text) {
 
 }  // namespace
 
-Tokens::Hash Tokens::hash_of(std::string_view token) {
-  Hash hash;
+TokenHash hash_of(std::string_view token) {
+  TokenHash hash;
   SHA256(reinterpret_cast<const unsigned char*>(token.data()), token.size(), hash.data());
   return hash;
 }
@@ -51,11 +51,10 @@ Result<Tokens> Tokens::parse(const std::string& text, const std::string& path) {
   return tokens;
 }
 
-Scope Tokens::scope_of(std::string_view token) const {
-  const Hash hash = hash_of(token);
+Scope Tokens::scope_of(const TokenHash& token) const {
   Scope scope = Scope::Nothing;
   for (const Token& known : tokens_)
-    if (CRYPTO_memcmp(hash.data(), known.hash.data(), hash.size()) == 0) scope = std::max(scope, known.scope);
+    if (CRYPTO_memcmp(token.data(), known.hash.data(), token.size()) == 0) scope = std::max(scope, known.scope);
   return scope;
 }
 

@@ -13,6 +13,9 @@ namespace kinemap {
 /// What the bearer of a token may do; each may also do what those before it may.
 enum class Scope { Nothing, Read, Admin };
 
+using TokenHash = std::array<unsigned char, 32>;  ///< SHA-256
+TokenHash hash_of(std::string_view token);
+
 /// The tokens that the daemon accepts. It keeps their hashes only.
 class Tokens {
  public:
@@ -22,15 +25,13 @@ class Tokens {
 
   [[nodiscard]] bool empty() const { return tokens_.empty(); }
   /// Takes as long for a token that is nearly right as for any other.
-  [[nodiscard]] Scope scope_of(std::string_view token) const;
+  [[nodiscard]] Scope scope_of(const TokenHash& token) const;
 
  private:
-  using Hash = std::array<unsigned char, 32>;  // SHA-256
   struct Token {
-    Hash hash;
+    TokenHash hash;
     Scope scope;
   };
-  static Hash hash_of(std::string_view token);
   std::vector<Token> tokens_;
 };
 

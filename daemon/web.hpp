@@ -7,14 +7,13 @@
 // after Asio with its <utility>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <list>
 
 #include "daemon/api.hpp"
+#include "daemon/guests.hpp"
 #include "daemon/net_stream.hpp"
 #include "daemon/security.hpp"
 #include "daemon/server.hpp"
 #include "daemon/stream_hub.hpp"
-#include "daemon/visitors.hpp"
 
 namespace kinemap {
 
@@ -23,17 +22,6 @@ namespace http = beast::http;
 namespace foxglove {
 class Feed;
 }
-
-/// A connection on which no request is being answered.
-class Waiting {
- public:
-  /// Ends, for others.
-  virtual void give_way() = 0;
-  [[nodiscard]] virtual const Visitor& visitor() const = 0;
-
- protected:
-  ~Waiting() = default;
-};
 
 /// What all connections share; the server's thread only.
 struct WebContext {
@@ -45,7 +33,7 @@ struct WebContext {
   Visitors visitors;
   Config::Api config;
   ServerLimits limits;
-  std::list<Waiting*> waiting;  ///< who has waited longest first
+  Guests guests;
 
   /// Whether limits by address hold for who comes from there.
   [[nodiscard]] bool limited(const Visitor& visitor) const { return !visitor.local || !security.policy.trusts_local(); }
@@ -57,31 +45,6 @@ struct WebContext {
   [[nodiscard]] bool crowded(const Visitor& visitor, std::size_t connections, std::size_t times = 1) const {
     return limited(visitor) && connections > times * static_cast<std::size_t>(config.max_clients_per_address);
   }
-};
-
-/// Counts a connection for as long as it lives.
-class ConnectionSlot {
- public:
-  /// `surplus`: there were as many as may be already.
-  ConnectionSlot(ApiCounts& counts, std::shared_ptr<Visitor> visitor, bool surplus)
-      : counts_(&counts), visitor_(std::move(visitor)), surplus_(surplus) {
-    ++counts_->connections;
-    ++visitor_->connections;
-  }
-  ConnectionSlot(ConnectionSlot&&) noexcept = default;
-  ConnectionSlot& operator=(ConnectionSlot&&) = delete;
-  ~ConnectionSlot() {
-    if (!visitor_) return;
-    --counts_->connections;
-    --visitor_->connections;
-  }
-  [[nodiscard]] Visitor& visitor() const { return *visitor_; }
-  [[nodiscard]] bool surplus() const { return surplus_; }
-
- private:
-  ApiCounts* counts_;
-  std::shared_ptr<Visitor> visitor_;  // null: moved from
-  bool surplus_;
 };
 
 /// Reads HTTP requests from the connection and answers them, until it ends or becomes a WebSocket.

@@ -42,13 +42,13 @@ std::string_view host_of(std::string_view origin) {
   return {};
 }
 
-std::string_view bearer(std::string_view authorization) {
+}  // namespace
+
+std::string_view bearer_token(std::string_view authorization) {
   constexpr std::string_view kScheme = "Bearer ";
   if (!same_name(authorization.substr(0, kScheme.size()), kScheme)) return {};
   return authorization.substr(kScheme.size());
 }
-
-}  // namespace
 
 WebPolicy::WebPolicy(const Config::Api& config, Tokens tokens, bool loopback_only, bool tls)
     : auth_(config.auth),
@@ -93,20 +93,25 @@ std::optional<ApiError> WebPolicy::refusal_by_place(const WebVisit& visit) const
                     "pages of other hosts may not open the stream; api.allowed_origins names those that may"};
   if (tls_ && !visit.tls && !(visit.local && trusts_local()))
     return ApiError{400, "tls_required", "this port speaks TLS: https://, wss://"};
-  if (visit.token && !visit.upgrade)
+  if (visit.token_in_query && !visit.upgrade)
     return ApiError{400, "token_in_query",
                     "?token= is for WebSockets only; send the header Authorization: Bearer TOKEN"};
   return std::nullopt;
 }
 
-std::optional<ApiError> WebPolicy::refusal_by_token(const WebVisit& visit) const {
-  if (auth_ == "none" || (visit.open && !visit.changes && !visit.upgrade)) return std::nullopt;
+Scope WebPolicy::scope_of(const WebVisit& visit) const {
+  if (auth_ == "none") return Scope::Admin;
   // Who names it otherwise may come through a proxy on this machine.
   if (trusts_local() && visit.local && (visit.host.empty() || is_loopback_name(without_port(visit.host))))
-    return std::nullopt;
-  const auto shown = visit.token ? std::string_view(*visit.token) : bearer(visit.authorization);
-  if (shown.empty()) return ApiError{401, "token_missing", "send a token: Authorization: Bearer TOKEN"};
-  const Scope scope = tokens_.scope_of(shown);
+    return Scope::Admin;
+  return visit.token ? tokens_.scope_of(*visit.token) : Scope::Nothing;
+}
+
+std::optional<ApiError> WebPolicy::refusal_by_token(const WebVisit& visit) const {
+  if (visit.open && !visit.changes && !visit.upgrade) return std::nullopt;
+  const Scope scope = scope_of(visit);
+  if (scope == Scope::Nothing && !visit.token)
+    return ApiError{401, "token_missing", "send a token: Authorization: Bearer TOKEN"};
   if (scope == Scope::Nothing) return ApiError{401, "token_wrong", "the token is none that this server knows"};
   if (visit.changes && scope != Scope::Admin)
     return ApiError{403, "token_reads_only", "the token is for reading; this needs one of scope admin"};

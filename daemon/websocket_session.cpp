@@ -12,11 +12,15 @@ namespace websocket = beast::websocket;
 constexpr std::size_t kLongestMessage = 256 * 1024;  // from a client
 constexpr std::size_t kSlowestBytesPerS = 64 * 1024;
 constexpr std::chrono::seconds kIdleTimeout{30};
+constexpr std::chrono::seconds kLeaveTimeout{3};  // for a client whose place is needed
 
 }  // namespace
 
 WebSocketSession::WebSocketSession(NetStream stream, WebContext& context, ConnectionSlot slot)
-    : stream_(std::move(stream)), pause_(stream_.get_executor()), context_(context), slot_(std::move(slot)) {}
+    : stream_(std::move(stream)), pause_(stream_.get_executor()), context_(context), slot_(std::move(slot)) {
+  slot_.guest().stream = true;
+  slot_.guest().leave = [this](const ApiError& why) { leave(why); };
+}
 
 void WebSocketSession::accept(http::request<http::string_body> request, const std::string& subprotocol) {
   auto timeouts = websocket::stream_base::timeout::suggested(beast::role_type::server);
@@ -32,6 +36,7 @@ void WebSocketSession::accept(http::request<http::string_body> request, const st
   request_ = std::move(request);
   stream_.async_accept(request_, [self = shared_from_this()](ErrorCode error) {
     if (error) return;
+    self->open_ = true;
     ++self->context_.api.counts().streams;
     self->on_open();
     self->write();
@@ -81,24 +86,42 @@ void WebSocketSession::write() {
 }
 
 void WebSocketSession::check_stall(Clock::time_point now) {
+  if (now > leave_deadline_) return cut_off();
   if (!writing_ || now <= write_deadline_) return;
-  give_up("");
-  ErrorCode ignored;
-  beast::get_lowest_layer(stream_).socket().close(ignored);
+  give_up("slow reader");
+  cut_off();
 }
 
 void WebSocketSession::give_up(const std::string& reason) {
   if (ended_) return;
   ++context_.api.counts().slow_clients_closed;
-  goodbye_ = reason;
+  close(websocket::close_code::policy_error, reason);
+}
+
+void WebSocketSession::close(int code, const std::string& reason) {
+  if (ended_) return;
+  constexpr std::size_t kLongestReason = 123;  // of a closing frame, RFC 6455
+  goodbye_ = websocket::close_reason(static_cast<websocket::close_code>(code), reason.substr(0, kLongestReason));
   end();
   if (!writing_) say_goodbye();
 }
 
+/// Codes of our own tell what HTTP says with the status.
+void WebSocketSession::leave(const ApiError& why) {
+  leave_deadline_ = Clock::now() + kLeaveTimeout;
+  const int code = why.status == 503 ? int{websocket::close_code::try_again_later} : 4000 + why.status;
+  if (!open_) return cut_off();
+  close(code, why.code + ": " + why.message);
+}
+
+void WebSocketSession::cut_off() {
+  ErrorCode ignored;
+  beast::get_lowest_layer(stream_).socket().close(ignored);
+}
+
 void WebSocketSession::say_goodbye() {
-  if (goodbye_.empty()) return;
-  const websocket::close_reason reason(websocket::close_code::policy_error, std::exchange(goodbye_, ""));
-  stream_.async_close(reason, [self = shared_from_this()](ErrorCode) {});
+  if (!goodbye_) return;
+  stream_.async_close(*std::exchange(goodbye_, std::nullopt), [self = shared_from_this()](ErrorCode) {});
 }
 
 void WebSocketSession::end() {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -48,8 +49,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void write();
   /// Gives up when the client has not taken the message that is being sent in time.
   void check_stall(Clock::time_point now);
-  /// The client is too slow: it is told why and disconnected. The closing frame cannot overtake the message that is
-  /// being sent; when that one is not taken in time either, the connection is just ended.
+  /// The client is too slow: it is told why and disconnected.
   void give_up(const std::string& reason);
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] WebContext& context() const { return context_; }
@@ -58,6 +58,11 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   void read();
   void take();
   void end();
+  /// Ends it, telling the client why. The closing frame cannot overtake the message that is being sent; when that one
+  /// is not taken in time either, the connection is just ended.
+  void close(int code, const std::string& reason);
+  void leave(const ApiError& why);
+  void cut_off();
   void say_goodbye();
 
   beast::websocket::stream<NetStream> stream_;
@@ -66,10 +71,12 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   ConnectionSlot slot_;
   http::request<http::string_body> request_;
   beast::flat_buffer buffer_;
-  std::string goodbye_;  // why the client was given up on
+  std::optional<beast::websocket::close_reason> goodbye_;  // to be told
+  bool open_ = false;                                      // the handshake is done
   bool writing_ = false;
   bool ended_ = false;
-  Clock::time_point write_deadline_;
+  Clock::time_point write_deadline_;  // of the message that is being sent
+  Clock::time_point leave_deadline_ = Clock::time_point::max();
 };
 
 }  // namespace kinemap

@@ -27,7 +27,8 @@ using test::HttpClient;
 using testing::HasSubstr;
 using Headers = std::vector<std::pair<std::string, std::string>>;
 
-const std::string kReader = "reader-0123456789abcdef", kAdmin = "admin-0123456789abcdef0";
+const std::string kReader = "reader-0123456789abcdef", kAdmin = "admin-0123456789abcdef0",
+                  kOther = "other-0123456789abcdef";
 const Headers kUpgrade{{"Connection", "Upgrade"},
                        {"Upgrade", "websocket"},
                        {"Sec-WebSocket-Version", "13"},
@@ -148,6 +149,44 @@ class TlsClient {
   ssl::context context_;
   ssl::stream<net::ip::tcp::socket> stream_{io_, context_};
   beast::flat_buffer buffer_;
+};
+
+/// A WebSocket of the stream from an address of this machine.
+class Watcher {
+ public:
+  Watcher(std::uint16_t port, const std::string& token, const std::string& address = "127.0.0.1") {
+    auto& socket = stream_.next_layer();
+    socket.open(net::ip::tcp::v4());
+    socket.bind({net::ip::make_address(address), 0});
+    socket.connect({net::ip::address_v4::loopback(), port});
+    const timeval patience{60, 0};
+    ::setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    stream_.handshake("localhost", "/api/v1/stream?token=" + token, refused_);
+  }
+  /// False: the server has declined.
+  [[nodiscard]] bool open() const {
+    EXPECT_TRUE(!refused_ || refused_ == beast::websocket::error::upgrade_declined) << refused_.message();
+    return !refused_;
+  }
+  [[nodiscard]] bool answers() {
+    ErrorCode error;
+    stream_.write(net::buffer(std::string(R"({"op":"query","id":1,"path":"map"})")), error);
+    beast::flat_buffer buffer;
+    if (!error) stream_.read(buffer, error);
+    return !error;
+  }
+  /// Waits until the server ends it: the code and the reason.
+  std::pair<int, std::string> goodbye() {
+    ErrorCode error;
+    beast::flat_buffer buffer;
+    while (!error) stream_.read(buffer, error);
+    return {stream_.reason().code, stream_.reason().reason.c_str()};
+  }
+
+ private:
+  net::io_context io_;
+  beast::websocket::stream<net::ip::tcp::socket> stream_{io_};
+  ErrorCode refused_;
 };
 
 TEST_F(SecurityTest, OtherAddressesWantATokenAndACertificateOrNoneInSoManyWords) {
@@ -426,10 +465,75 @@ TEST_F(SecurityTest, ConnectionsOfOneAddressAreLimited) {
   config.max_clients_per_address = 2;
   start(config);
   const Headers token{{"Authorization", "Bearer " + kReader}};
-  HttpClient first(port_), second(port_), third(port_);
-  EXPECT_EQ(first.request("GET", "/api/v1/map", token).status, 200);
-  EXPECT_EQ(second.request("GET", "/api/v1/map", token).status, 200);
+  Watcher first(port_, kReader), second(port_, kReader);
+  ASSERT_TRUE(first.open());
+  ASSERT_TRUE(second.open());
+  HttpClient third(port_);
   EXPECT_EQ(third.request("GET", "/api/v1/map", token).json()["error"]["code"], "too_many_of_you");
+}
+
+TEST_F(SecurityTest, OpenStreamsWhoseTokenIsGoneOrMayLessAreClosed) {
+  const std::string gone = "gone-0123456789abcdef", falls = "falls-0123456789abcdef";
+  write("tokens", "read " + kReader + "\nread " + gone + "\nadmin " + falls + "\nadmin " + kAdmin + "\n");
+  start(guarded());
+  Watcher reader(port_, kReader), without(port_, gone), fallen(port_, falls), admin(port_, kAdmin);
+  write("tokens", "read " + kReader + "\nread " + falls + "\nadmin " + kAdmin + "\n");
+  EXPECT_FALSE(server_->reconfigure(guarded()));
+  const auto [code, reason] = without.goodbye();
+  EXPECT_EQ(code, 4401);
+  EXPECT_THAT(reason, HasSubstr("token_wrong"));
+  EXPECT_EQ(fallen.goodbye().first, 4403);
+  EXPECT_TRUE(reader.answers());
+  EXPECT_TRUE(admin.answers());
+  EXPECT_FALSE(Watcher(port_, gone).open());
+  EXPECT_TRUE(Watcher(port_, falls).open());
+  const auto status = HttpClient(port_).request("GET", "/api/v1/status", {{"Authorization", "Bearer " + kReader}});
+  EXPECT_EQ(status.json()["clients"]["revoked"], 2);
+  // What else decides at the door holds for who is inside, too.
+  EXPECT_FALSE(server_->reconfigure(encrypted()));
+  EXPECT_EQ(reader.goodbye().first, 4400);
+}
+
+TEST_F(SecurityTest, SomeAddressesCannotTakeAllPlaces) {
+  auto config = guarded();
+  config.max_clients = 16;
+  config.max_clients_per_address = 4;
+  start(config);
+  std::vector<std::unique_ptr<Watcher>> many;
+  for (int i = 0; i < 16; ++i)
+    many.push_back(std::make_unique<Watcher>(port_, kReader, "127.0.0." + std::to_string(2 + i % 4)));
+  for (const auto& one : many) ASSERT_TRUE(one->open());
+  // Others share alike with them …
+  Watcher other(port_, kReader, "127.0.0.9");
+  EXPECT_TRUE(other.open());
+  EXPECT_TRUE(other.answers());
+  EXPECT_EQ(many.front()->goodbye().first, 1013) << "the oldest of those that have the most";
+  // … who come back in vain.
+  EXPECT_FALSE(Watcher(port_, kReader, "127.0.0.2").open());
+  EXPECT_EQ(HttpClient(port_).get("/").status, 200) << "the page is for everybody";
+  EXPECT_EQ(ask("GET", "/api/v1/map").first, 401);
+  // Who may do more always gets in, also from an address that has its share.
+  Watcher admin(port_, kAdmin, "127.0.0.3");
+  EXPECT_TRUE(admin.open());
+  EXPECT_TRUE(admin.answers());
+  EXPECT_TRUE(other.answers());
+  const auto status = HttpClient(port_).request("GET", "/api/v1/status", {{"Authorization", "Bearer " + kAdmin}});
+  EXPECT_EQ(status.status, 200);
+  EXPECT_GE(status.json()["clients"]["displaced"], 3);
+}
+
+TEST_F(SecurityTest, OneTokenCannotTakeAllPlacesFromManyAddresses) {
+  write("tokens", "read " + kReader + "\nread " + kOther + "\n");
+  auto config = guarded();
+  config.max_clients = 8;
+  start(config);
+  std::vector<std::unique_ptr<Watcher>> many;
+  for (int i = 0; i < 8; ++i)
+    many.push_back(std::make_unique<Watcher>(port_, kReader, "127.0.1." + std::to_string(1 + i)));
+  EXPECT_FALSE(Watcher(port_, kReader, "127.0.2.1").open()) << "each of them has one";
+  Watcher other(port_, kOther, "127.0.2.1");
+  EXPECT_TRUE(other.open());
+  EXPECT_TRUE(other.answers());
 }
 
 TEST_F(SecurityTest, WhoAsksForNothingGivesWayAndWhoIsSlowIsClosed) {

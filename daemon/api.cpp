@@ -55,7 +55,9 @@ void Api::add_routes() {
       [this](const Call&) { return reply_of(query_rooms(*sources_.map())); });
   add("/api/v1/rooms/{id}", "One room.", {}, "room_with_objects",
       [this](const Call& call) { return reply_of(query_room(*sources_.map(), call.id)); });
-  add("/api/v1/trajectory", "The optimised key poses of the pelvis.", trajectory_params(), "trajectory",
+  add("/api/v1/trajectory",
+      "The optimised key poses of the pelvis; of the way of long ago those that the others lie between.",
+      trajectory_params(), "trajectory",
       [this](const Call& call) { return reply_of(query_trajectory(*sources_.map(), call.params)); });
   add("/api/v1/pose", "Where the wearer is now.", {}, "pose_now",
       [this](const Call&) { return reply_of(query_pose(*sources_.map(), sources_.body(), now_s())); });

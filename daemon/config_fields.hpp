@@ -251,6 +251,8 @@ template <class V>
 void fields(V& v, MapperConfig::Solver& c) {
   v.number("closure_iterations", c.closure_iterations, Range{"1", 1, 1000});
   v.number("final_iterations", c.final_iterations, Range{"1", 1, 1000});
+  v.number("most_free_key_poses", c.most_free_key_poses, Range{"1", 100, 1000000});
+  v.number("kept_free_key_poses", c.kept_free_key_poses, Range{"1", 50, 1000000});
 }
 
 template <class V>

@@ -100,6 +100,21 @@ class Check {
     }
   }
 
+  void folded_factors() {
+    for (std::size_t k = 0; k < g_.folded.size(); ++k) {
+      const FoldedFactor& f = g_.folded[k];
+      if (!landmark_exists(f.landmark, "folded factor", k)) return;
+      require(f.touch < g_.touch_points.size(), "folded factor", k,
+              "refers to a touch point that the graph does not have");
+      const int size = dimension(f.at.kind);
+      require(g_.landmarks[f.landmark].kind == f.at.kind && f.residual.size() == f.sqrt_information.rows() &&
+                  (f.sqrt_information.cols() == size || f.sqrt_information.cols() == size + 3),
+              "folded factor", k, "has not the numbers of its landmark");
+      require(f.sqrt_information.allFinite() && f.residual.allFinite() && f.p_hand.allFinite() && std::isfinite(f.rest),
+              "folded factor", k, kBadNumbers);
+    }
+  }
+
   std::optional<std::string> fault;
 
  private:
@@ -127,6 +142,7 @@ std::optional<std::string> find_fault(const Graph& graph) {
   check.variables();
   check.pose_factors();
   check.landmark_factors();
+  check.folded_factors();
   return check.fault;
 }
 

@@ -20,4 +20,13 @@ Eigen::Vector3d contact_error(const Landmark& landmark, const Eigen::Vector3d& p
   return e;
 }
 
+double weighted_square(const Graph& graph, const ContactFactor& c) {
+  const Eigen::Vector3d p_map = graph.poses[c.i] * (c.T_i_hand * graph.touch_points[c.touch].p_hand);
+  const Eigen::Vector3d sigma(c.sigma_plane_m, c.sigma_edge_m, c.sigma_corner_m);
+  const double s =
+      contact_error(graph.landmarks[c.landmark], p_map, c.edge, c.corner).cwiseQuotient(sigma).squaredNorm();
+  const double scale2 = c.loss.scale * c.loss.scale;
+  return c.loss.kind == Loss::Kind::Cauchy ? s / (1.0 + s / scale2) : s;
+}
+
 }  // namespace kinemap::graph

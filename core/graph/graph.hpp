@@ -142,6 +142,22 @@ struct LandmarkPrior {
   double sigma = 1.0;
 };
 
+/// What contacts or seats that are no more in the graph said of a landmark and of the touching point
+/// (core/graph/fold.hpp makes it): a Gaussian on the numbers that the landmark had when they were folded, whatever it
+/// is called since. Residual: [sqrt_information·δ + residual; rest] with δ the change of these numbers, then that of
+/// the touching point.
+struct FoldedFactor {
+  std::size_t landmark = 0;
+  std::size_t touch = 0;
+  Landmark at;                                       ///< as it was
+  Eigen::Vector3d p_hand = Eigen::Vector3d::Zero();  ///< as it was
+  int quarter_turns = 0;             ///< tables: the axes are turned so many times 90° against the landmark's of now
+  Eigen::MatrixXd sqrt_information;  ///< a column for each number; three more when the touching point was free
+  Eigen::VectorXd residual;          ///< at `at` and `p_hand`
+  double rest = 0.0;                 ///< no numbers change it; the cost goes on as it was
+  double weighted_squares = 0.0;     ///< Σ weighted_square() of the contacts
+};
+
 struct Graph {
   std::vector<Pose> poses;          ///< T_map_i
   std::size_t first_free_pose = 0;  ///< those before are constants: they move no more, and have no covariance
@@ -156,6 +172,7 @@ struct Graph {
   std::vector<SeatFactor> seats;
   std::vector<ParallelFactor> parallels;
   std::vector<LandmarkPrior> landmark_priors;
+  std::vector<FoldedFactor> folded;
 };
 
 /// Local frame of a table or screen (`T_map_rectangle`, axes u, v, w as documented at Landmark) or seat (level, +x =
@@ -164,5 +181,8 @@ Pose landmark_pose(const Landmark& landmark);
 
 /// Unwhitened contact errors, m: distance to the plane (along w), to `edge` and to `corner` (0 where None).
 Eigen::Vector3d contact_error(const Landmark& landmark, const Eigen::Vector3d& p_map, Edge edge, Edge corner);
+
+/// ρ'‖r‖² of a contact as the graph stands, at the noise that the factor names (the lever of the hand left aside).
+double weighted_square(const Graph& graph, const ContactFactor& contact);
 
 }  // namespace kinemap::graph

@@ -6,11 +6,10 @@
 #include <array>
 #include <numeric>
 
+#include "core/graph/linearised.hpp"
+
 namespace kinemap::graph {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Strided = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>;
 
 std::vector<int> tangent_sizes(const Graph& graph) {
   std::vector<int> sizes(graph.poses.size(), 6);
@@ -140,36 +139,6 @@ Eigen::SparseMatrix<double> BlockPattern::allocate() {
   std::fill_n(m.valuePtr(), offset, 0.0);
   return m;
 }
-
-/// One block's Jacobians, evaluated into reused memory.
-class Linearised {
- public:
-  bool evaluate(const ResidualBlock& block) {
-    rows_ = block.cost->num_residuals();
-    const auto& sizes = block.cost->parameter_block_sizes();
-    std::size_t need = 0;
-    for (const int size : sizes) need += static_cast<std::size_t>(size * rows_);
-    if (memory_.size() < need) memory_.resize(need);
-    residuals_.resize(static_cast<std::size_t>(rows_));
-    double* next = memory_.data();
-    for (std::size_t k = 0; k < sizes.size(); ++k) {
-      pointers_[k] = next;
-      strides_[k] = sizes[k];
-      next += sizes[k] * rows_;
-    }
-    return block.cost->Evaluate(block.parameters.data(), residuals_.data(), pointers_.data());
-  }
-  [[nodiscard]] Strided jacobian(int k, int tangent) const {
-    const auto i = static_cast<std::size_t>(k);
-    return {pointers_[i], rows_, tangent, Eigen::OuterStride<>(strides_[i])};
-  }
-
- private:
-  int rows_ = 0;
-  std::vector<double> memory_, residuals_;
-  std::array<double*, 3> pointers_{};
-  std::array<int, 3> strides_{};
-};
 
 }  // namespace
 

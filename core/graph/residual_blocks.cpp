@@ -76,6 +76,7 @@ ResidualBlocks::ResidualBlocks(const Graph& graph, Values& values, std::size_t f
   add_contacts();
   add_landmark_factors();
   add_touch_priors();
+  add_folded();
 }
 
 void ResidualBlocks::add_pose_factors() {
@@ -136,6 +137,19 @@ void ResidualBlocks::add_landmark_factors() {
 void ResidualBlocks::add_touch_priors() {
   for (std::size_t t = 0; t < graph_.touch_points.size(); ++t) {
     if (!graph_.touch_points[t].fixed) add(touch_prior_costs_.emplace_back(graph_.touch_points[t]), {touch_id(t)});
+  }
+}
+
+void ResidualBlocks::add_folded() {
+  for (const FoldedFactor& f : graph_.folded) {
+    const Landmark& landmark = graph_.landmarks[f.landmark];
+    if (!landmark.active) continue;
+    const FoldedCost& cost = folded_costs_.emplace_back(f, landmark, graph_.touch_points[f.touch]);
+    if (cost.with_touch()) {
+      add(cost, {landmark_id(f.landmark), touch_id(f.touch)});
+    } else {
+      add(cost, {landmark_id(f.landmark)});
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/graph/cost_functions.hpp"
+#include "core/graph/folded_cost.hpp"
 #include "core/graph/graph.hpp"
 
 /// Private to core/graph: the graph in the form that Ceres and the normal equations of Marginals both read.
@@ -70,6 +71,7 @@ class ResidualBlocks {
   void add_contacts();
   void add_landmark_factors();
   void add_touch_priors();
+  void add_folded();
   void add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables);
   [[nodiscard]] VariableId landmark_id(std::size_t landmark) const;
   [[nodiscard]] VariableId touch_id(std::size_t touch) const;
@@ -88,6 +90,7 @@ class ResidualBlocks {
   std::deque<ParallelCost> parallel_costs_;
   std::deque<LandmarkPriorCost> landmark_prior_costs_;
   std::deque<TouchPriorCost> touch_prior_costs_;
+  std::deque<FoldedCost> folded_costs_;
 };
 
 }  // namespace kinemap::graph

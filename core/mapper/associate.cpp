@@ -160,19 +160,19 @@ double evidence(const Difference& d, const Eigen::VectorXd& e, const Eigen::Matr
   return twice_log_density(e, s) - 2.0 * std::log(another);
 }
 
-std::optional<KeyPoseId> last_visit(const MapState& state, std::size_t landmark) {
+std::optional<std::size_t> last_visit(const MapState& state, std::size_t landmark) {
   for (std::size_t k = state.observations.size(); k-- > 0;)
     if (state.observations[k].landmark == landmark) return state.observations[k].key_pose;
   return std::nullopt;
 }
 
 /// Variance of the way from pose j to pose i along the level unit vector `axis`, m².
-double variance_along(const MapState& state, const graph::Marginals& marginals, KeyPoseId i, KeyPoseId j,
+double variance_along(const MapState& state, const graph::Marginals& marginals, std::size_t i, std::size_t j,
                       const Eigen::Vector3d& axis) {
   if (i == j) return 0.0;
   std::vector<graph::Variable> poses;
   Eigen::Matrix<double, 1, 12> h = Eigen::Matrix<double, 1, 12>::Zero();
-  const auto add = [&](KeyPoseId pose, double sign) {
+  const auto add = [&](std::size_t pose, double sign) {
     if (pose < state.graph.first_free_pose) return;  // a constant
     const auto column = static_cast<Eigen::Index>(6 * poses.size());
     h.segment<3>(column) = sign * axis.transpose() * state.graph.poses[pose].q.toRotationMatrix();
@@ -222,19 +222,33 @@ double gate(double sigma, int dimensions) {
   return k * std::pow(1.0 - h + lo * std::sqrt(h), 3.0);
 }
 
+std::optional<Interval> contact_interval(const MapState& state, const ObservationRecord& visit,
+                                         const WallFrame& frame) {
+  std::optional<Interval> out;
+  const auto extend = [&](const Eigen::Vector3d& p) {
+    if (std::abs(frame.distance(p)) > kOnPlane) return;
+    const double s = frame.along(p);
+    if (!out) out = Interval{s, s};
+    out->lo = std::min(out->lo, s), out->hi = std::max(out->hi, s);
+  };
+  for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k) {
+    const auto& c = state.graph.contacts[k];
+    extend(state.graph.poses[c.i] * (c.T_i_hand * state.graph.touch_points[c.touch].p_hand));
+  }
+  if (visit.settled && visit.settled->touched)
+    std::for_each(visit.settled->touched->begin(), visit.settled->touched->end(), extend);
+  return out;
+}
+
 std::optional<Interval> contact_interval(const MapState& state, std::size_t wall) {
   const WallFrame frame(state.graph.landmarks[wall]);
   std::optional<Interval> out;
   for (const auto& visit : state.observations) {
     if (visit.landmark != wall) continue;
-    for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k) {
-      const auto& c = state.graph.contacts[k];
-      const Eigen::Vector3d p = state.graph.poses[c.i] * (c.T_i_hand * state.graph.touch_points[c.touch].p_hand);
-      if (std::abs(frame.distance(p)) > kOnPlane) continue;
-      const double s = frame.along(p);
-      if (!out) out = Interval{s, s};
-      out->lo = std::min(out->lo, s), out->hi = std::max(out->hi, s);
-    }
+    const auto touched = contact_interval(state, visit, frame);
+    if (!touched) continue;
+    if (!out) out = touched;
+    out->lo = std::min(out->lo, touched->lo), out->hi = std::max(out->hi, touched->hi);
   }
   return out;
 }
@@ -281,7 +295,12 @@ void merge(MapState& state, std::size_t from, const Candidate& candidate) {
       contact.edge = turned(contact.edge, candidate.quarter_turns);
       contact.corner = turned(contact.corner, candidate.quarter_turns);
     }
-    if (visit.contacts == 0) state.graph.seats[visit.seat].landmark = to;
+    if (visit.has_seat()) state.graph.seats[visit.seat].landmark = to;
+  }
+  for (auto& folded : state.graph.folded) {
+    if (folded.landmark != from) continue;
+    folded.landmark = to;
+    folded.quarter_turns = (folded.quarter_turns + candidate.quarter_turns) % 4;
   }
   state.graph.landmarks[from].active = false;
   std::erase_if(state.graph.parallels, [from](const graph::ParallelFactor& f) { return f.b == from; });
@@ -306,7 +325,7 @@ std::size_t split(MapState& state, std::size_t visit) {
   record.landmark = to;
   for (std::size_t k = record.first_contact; k < record.first_contact + record.contacts; ++k)
     state.graph.contacts[k].landmark = to;
-  if (record.contacts == 0) state.graph.seats[record.seat].landmark = to;
+  if (record.has_seat()) state.graph.seats[record.seat].landmark = to;
 
   LandmarkRecord& rest = state.landmarks[from];
   rest.observations = 0, rest.first_seen_s = HUGE_VAL, rest.last_seen_s = -HUGE_VAL;

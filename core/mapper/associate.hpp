@@ -7,6 +7,7 @@
 #include "core/graph/marginals.hpp"
 #include "core/mapper/config.hpp"
 #include "core/mapper/state.hpp"
+#include "core/mapper/wall_frame.hpp"
 
 namespace kinemap {
 
@@ -41,5 +42,7 @@ struct Interval {
   double lo = 0.0, hi = 0.0;
 };
 std::optional<Interval> contact_interval(const MapState& state, std::size_t wall);
+/// The same of one visit, along the wall with the given frame.
+std::optional<Interval> contact_interval(const MapState& state, const ObservationRecord& visit, const WallFrame& frame);
 
 }  // namespace kinemap

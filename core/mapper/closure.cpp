@@ -24,7 +24,7 @@ void set_loss(MapState& state, const std::vector<std::size_t>& visits, graph::Lo
     const auto& visit = state.observations[v];
     for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k)
       state.graph.contacts[k].loss = contact;
-    if (visit.contacts == 0) state.graph.seats[visit.seat].loss = seat;
+    if (visit.has_seat()) state.graph.seats[visit.seat].loss = seat;
   }
 }
 

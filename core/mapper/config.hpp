@@ -35,7 +35,7 @@ struct MapperConfig {
     double tip_per_stature = 0.105;       ///< finger tip beyond the wrist as a part of the body height
     double tip_thickness_m = 0.01;        ///< from the hand's axis to the pads of the fingers
     double tip_sigma_m = 0.025;           ///< how far from there fingers touch, along the hand; 0: taken as it is
-    double body_point_sigma_m = 0.02;    ///< the same where the suit's body points or `tip_m` say where the tip is
+    double body_point_sigma_m = 0.02;     ///< the same where the suit's body points or `tip_m` say where the tip is
     double tip_sideways_sigma_m = 0.015;  ///< the same across the hand
     double palm_share = 0.25;             ///< of the wearers who touch with the flat palm; 0: nobody does
     double palm_per_stature = 0.0525;     ///< middle of the palm beyond the wrist as a part of the body height
@@ -87,6 +87,10 @@ struct MapperConfig {
   struct Solver {
     int closure_iterations = 6;  ///< at each loop closure, warm-started
     int final_iterations = 30;   ///< at the end of a recording
+    /// In a session of hours, once so many key poses are free to move, those before the last `kept_free_key_poses`
+    /// settle as far as their places are known (core/mapper/settled.hpp).
+    int most_free_key_poses = 4500;
+    int kept_free_key_poses = 3000;
   } solver;
 
   LandmarkConfig landmarks;

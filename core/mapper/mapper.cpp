@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/mapper/mapper.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/mapper/closure.hpp"
@@ -39,12 +41,14 @@ class Mapper::Impl {
     if (const auto& way = state_.graph.between; !way.empty())
       pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back());
     time_s_ = key_pose.time_s;
-    if (odometry_.key_poses().size() < snapshot_->trajectory.size() + kTrajectoryLag) return false;
+    if (key_pose.id + 1 < snapshot_->graph.key_poses + kTrajectoryLag) return false;
     publish(std::make_shared<MapSnapshot>(*snapshot_));  // the objects are as they were
     return true;
   }
 
-  bool add(const Trace& trace) {
+  bool add(const Trace& as_told) {
+    Trace trace = as_told;
+    for (HandContact& contact : trace.contacts) contact.key_pose = pose_of(contact.key_pose);
     time_s_ = trace.end_s;
     touched_ = true;
     touch_.expect(wearer_, trace.stature_m);
@@ -73,7 +77,9 @@ class Mapper::Impl {
     return true;
   }
 
-  bool add(const Sitting& sitting) {
+  bool add(const Sitting& as_told) {
+    Sitting sitting = as_told;
+    sitting.key_pose = pose_of(sitting.key_pose);
     time_s_ = sitting.end_s;
     associate(add_seat(sitting, odometry_.floor_z(), config_, state_));
     publish();
@@ -155,7 +161,7 @@ class Mapper::Impl {
     if (marginals && touched_)
       map->hand =
           describe_hand(touch_, state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
-    if (marginals) state_.graph.first_free_pose = first_unsettled_pose(state_.graph, *marginals);
+    if (marginals) settle_way(*marginals);
     publish(std::move(map));
   }
 
@@ -164,18 +170,60 @@ class Mapper::Impl {
     map->revision = snapshot_->revision + 1;
     map->time_s = time_s_;
     const auto& key_poses = odometry_.key_poses();
-    map->trajectory.clear();
-    map->trajectory.reserve(key_poses.size());
-    for (const auto& key_pose : key_poses)
-      map->trajectory.push_back({key_pose.id, key_pose.time_s, state_.graph.poses[key_pose.id], key_pose.T_odom_pelvis,
-                                 step_sigma(state_.graph, key_pose.id)});
+    map->trajectory = settled_way_;
+    map->trajectory.reserve(state_.graph.poses.size());
+    for (std::size_t k = settled_way_.empty() ? 0 : 1; k < key_poses.size(); ++k)
+      map->trajectory.push_back(trajectory_pose(k));
     if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();
     if (!key_poses.empty())
       map->pelvis_covariance = pelvis_covariance_.published(state_.graph.poses.back(), state_.graph.poses.front().p);
     map->graph = state_.summary;
-    map->graph.key_poses = key_poses.size();
+    map->graph.key_poses = key_poses.empty() ? 0 : key_poses.back().id + std::size_t{1};
     map->graph.landmarks = map->objects.size();
     snapshot_ = std::move(map);
+  }
+
+  /// The pose of the graph for a key pose. Events refer to recent ones; for one that is settled and was left out it is
+  /// the one kept before it, which is near.
+  [[nodiscard]] KeyPoseId pose_of(KeyPoseId id) const {
+    if (settled_way_.empty()) return id;
+    const KeyPoseId newest_settled = settled_way_.back().id;
+    const auto settled = static_cast<KeyPoseId>(settled_way_.size());
+    if (id > newest_settled) return id - newest_settled - 1 + settled;
+    const auto after = std::upper_bound(settled_way_.begin(), settled_way_.end(), id,
+                                        [](KeyPoseId x, const TrajectoryPose& pose) { return x < pose.id; });
+    return static_cast<KeyPoseId>(std::max<std::ptrdiff_t>(1, after - settled_way_.begin()) - 1);
+  }
+
+  /// The k-th key pose that odometry still has, as it is published.
+  [[nodiscard]] TrajectoryPose trajectory_pose(std::size_t k) const {
+    const KeyPose& key_pose = odometry_.key_poses()[k];
+    return {key_pose.id, key_pose.time_s, state_.graph.poses[pose_of(key_pose.id)], key_pose.T_odom_pelvis,
+            k == 0 ? StepSigma{} : step_sigma(state_.graph.between[k - 1])};
+  }
+
+  /// Takes the way of long ago out of the graph, where it is well known by now.
+  void settle_way(const graph::Marginals& marginals) {
+    const std::size_t end = first_unsettled_pose(state_, marginals, config_.solver);
+    if (end == state_.graph.first_free_pose) return;
+    const std::size_t begin = settled_way_.empty() ? 0 : settled_way_.size() - 1;  // of what odometry still has
+    std::vector<TrajectoryPose> way;
+    for (std::size_t k = 0; begin + k < end; ++k) way.push_back(trajectory_pose(k));
+    std::vector<std::size_t> wanted;
+    for (const ObservationRecord& visit : state_.observations)
+      if (visit.key_pose >= begin) wanted.push_back(visit.key_pose - begin);
+    std::sort(wanted.begin(), wanted.end());
+    const std::vector<std::size_t> kept = poses_to_keep(way, wanted);
+
+    std::vector<std::size_t> kept_in_graph(begin);
+    std::iota(kept_in_graph.begin(), kept_in_graph.end(), std::size_t{0});
+    for (const std::size_t k : kept) kept_in_graph.push_back(begin + k);
+    if (!fold_settled(state_, end, kept_in_graph)) return;
+    resolver_.renumber(end, end - kept_in_graph.size());
+    if (!settled_way_.empty()) way.front() = settled_way_.back(), settled_way_.pop_back();
+    const auto kept_way = thinned(way, kept);
+    settled_way_.insert(settled_way_.end(), kept_way.begin(), kept_way.end());
+    odometry_.forget(way.size() - 1);
   }
 
   MapperConfig config_;
@@ -187,6 +235,7 @@ class Mapper::Impl {
   PoseCovariance pelvis_covariance_;
   bool touched_ = false;  ///< a trace or pivot gesture has been seen
   MapState state_;
+  std::vector<TrajectoryPose> settled_way_;  ///< of the graph's constant poses; the last is odometry's first
   std::vector<UnresolvedTrace> unresolved_;
   double time_s_ = 0.0;
   std::shared_ptr<const MapSnapshot> snapshot_;

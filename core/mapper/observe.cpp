@@ -109,7 +109,7 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
   }
   if (!kept.empty()) record.key_pose = trace.contacts[observation.contacts[kept[kept.size() / 2]]].key_pose;
   state.observations.push_back(record);
-  state.summary.contacts = state.graph.contacts.size();
+  state.summary.contacts += kept.size();
   return landmark;
 }
 

@@ -83,7 +83,7 @@ void Odometry::add(const KeyPose& key_pose, graph::Graph& graph) {
     add_between(key_pose, graph);
   }
   graph::GravityFactor gravity;
-  gravity.i = key_pose.id;
+  gravity.i = graph.poses.size() - 1;
   gravity.up = key_pose.T_odom_pelvis.q.conjugate() * Eigen::Vector3d::UnitZ();
   gravity.sigma_rad = config_.tilt_rad;
   graph.gravity.push_back(gravity);
@@ -95,8 +95,8 @@ void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) {
   if (key_pose.field_disturbed.value_or(false)) suspect_until_s_ = key_pose.time_s + config_.magnetic_after_s;
   const KeyPose& from = key_poses_.back();
   graph::BetweenFactor between;
-  between.i = from.id;
-  between.j = key_pose.id;
+  between.i = graph.poses.size() - 1;
+  between.j = graph.poses.size();
   between.T_i_j = odometry_step(from, key_pose);
   between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s <= suspect_until_s_, config_);
   graph.between.push_back(between);
@@ -139,7 +139,7 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
     off_level_ = 0.0;
   }
   graph::FloorFactor floor;
-  floor.i = key_pose.id;
+  floor.i = graph.poses.size() - 1;
   floor.p_i = *key_pose.p_pelvis_stance;
   floor.z = level_z_;
   floor.sigma_m = config_.floor_m;
@@ -150,9 +150,8 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
   pose.p.z() += level_z_ - (pose * floor.p_i).z();
 }
 
-StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to) {
-  if (to == 0) return {};
-  const graph::Matrix6& information = graph.between[to - 1].sqrt_information;  // diagonal
+StepSigma step_sigma(const graph::BetweenFactor& between) {
+  const graph::Matrix6& information = between.sqrt_information;  // diagonal
   return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), 1.0 / information(5, 5)};
 }
 

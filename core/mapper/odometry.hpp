@@ -17,13 +17,19 @@ class Odometry {
  public:
   explicit Odometry(const MapperConfig::Odometry& config) : config_(config) {}
 
-  /// Appends pose `key_pose.id` to the graph with its factors. Key poses come in order, without gaps.
+  /// Appends a pose to the graph with its factors. Key poses come in order, without gaps.
   void add(const KeyPose& key_pose, graph::Graph& graph);
 
   /// A guess: the compass is not to be trusted between these times (s), the heading may have turned more than odometry
   /// says. Where the suit says how the field was (KeyPose::field_disturbed) that counts, and nothing is guessed.
   void suspect_heading(double begin_s, double end_s, graph::Graph& graph);
 
+  /// Lets the first `count` key poses go, with the odometry between them and to the next one. Not all of them.
+  void forget(std::size_t count) {
+    key_poses_.erase(key_poses_.begin(), key_poses_.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  /// Those not let go, the newest last; to the k-th leads graph.between[k − 1].
   [[nodiscard]] const std::vector<KeyPose>& key_poses() const { return key_poses_; }
   /// Height of the level that the wearer stands on, map frame, m.
   [[nodiscard]] double floor_z() const { return level_z_; }
@@ -51,8 +57,8 @@ Pose odometry_step(const KeyPose& from, const KeyPose& to);
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
                                          const MapperConfig::Odometry& config);
 
-/// The noise of the odometry that leads to pose `to`, as the graph has it; all 0 for the first pose.
-StepSigma step_sigma(const graph::Graph& graph, KeyPoseId to);
+/// The noise of a step of the odometry, as the graph has it.
+StepSigma step_sigma(const graph::BetweenFactor& between);
 
 /// The noise of one step with the heading as errors usually show it.
 graph::Matrix6 typical_noise(const graph::Matrix6& sqrt_information, const MapperConfig::Odometry& config);

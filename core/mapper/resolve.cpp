@@ -63,6 +63,14 @@ ResolvedTrace TraceResolver::resolve(const Trace& trace, const graph::Graph& gra
   return alone;
 }
 
+void TraceResolver::renumber(std::size_t first, std::size_t fewer) {
+  if (!open_) return;
+  for (HandContact& contact : open_->contacts) {
+    if (contact.key_pose < first) return open_.reset();
+    contact.key_pose -= static_cast<KeyPoseId>(fewer);
+  }
+}
+
 std::optional<ResolvedTrace> TraceResolver::joined(const Trace& before, const Trace& after, const graph::Graph& graph,
                                                    std::size_t touch, double floor_z, bool with_way) const {
   ResolvedTrace both{

@@ -29,6 +29,9 @@ class TraceResolver {
   /// `touch` indexes the graph's touching points; `floor_z` in the map frame, m.
   ResolvedTrace resolve(const Trace& trace, const graph::Graph& graph, std::size_t touch, double floor_z);
 
+  /// Poses of the graph have been left out: those from `first` on have numbers that are less by `fewer`.
+  void renumber(std::size_t first, std::size_t fewer);
+
  private:
   /// Both traces as one, if one rectangle was drawn in them; with or without the hand's way from the surface and back
   /// to it where they meet.

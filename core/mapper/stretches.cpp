@@ -165,6 +165,8 @@ TouchedWalls touched_walls(const MapState& state) {
       if (visit.landmark != k) continue;
       for (std::size_t c = visit.first_contact; c < visit.first_contact + visit.contacts; ++c)
         stretch.poses.push_back(state.graph.contacts[c].i);
+      if (visit.settled)
+        for (std::size_t i = visit.settled->first_pose; i <= visit.settled->last_pose; ++i) stretch.poses.push_back(i);
     }
     std::sort(stretch.poses.begin(), stretch.poses.end());
     const auto same = std::find_if(out.begin(), out.end(), [&](const Stretch& s) { return is_same_wall(s, stretch); });

@@ -58,15 +58,10 @@ double fingers_into_surface(const Observation& observation, const Trace& trace, 
 /// Σ ρ'‖r‖² over the contacts with a touching point.
 double weighted_squares(const graph::Graph& graph, std::size_t touch) {
   double sum = 0.0;
-  for (const graph::ContactFactor& c : graph.contacts) {
-    const graph::Landmark& landmark = graph.landmarks[c.landmark];
-    if (c.touch != touch || !landmark.active) continue;
-    const Vector3d p_map = graph.poses[c.i] * (c.T_i_hand * graph.touch_points[touch].p_hand);
-    const Vector3d sigma(c.sigma_plane_m, c.sigma_edge_m, c.sigma_corner_m);
-    const double s = graph::contact_error(landmark, p_map, c.edge, c.corner).cwiseQuotient(sigma).squaredNorm();
-    const double scale2 = c.loss.scale * c.loss.scale;
-    sum += c.loss.kind == graph::Loss::Kind::Cauchy ? s / (1.0 + s / scale2) : s;
-  }
+  for (const graph::ContactFactor& c : graph.contacts)
+    if (c.touch == touch && graph.landmarks[c.landmark].active) sum += graph::weighted_square(graph, c);
+  for (const graph::FoldedFactor& f : graph.folded)
+    if (f.touch == touch && graph.landmarks[f.landmark].active) sum += f.weighted_squares;
   return sum;
 }
 

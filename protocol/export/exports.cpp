@@ -49,7 +49,7 @@ const Export* find_export(std::string_view name) {
 
 Result<std::string> export_map(const Export& file, const MapSnapshot& map) {
   const std::string name = file.name;
-  if (file.needs != Objects && map.trajectory.size() < map.graph.key_poses)
+  if (file.needs != Objects && map.trajectory.empty() && map.graph.key_poses > 0)
     return Error{name +
                  " needs the trajectory, which map.json does not hold: give the directory with trajectory.tum "
                  "and odometry.tum beside map.json"};

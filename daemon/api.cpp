@@ -72,7 +72,7 @@ void Api::add_routes() {
                .content_type = kMetricsType,
                .answer = [this](const Call&) {
                  return Reply{.content_type = kMetricsType,
-                              .body = std::make_shared<const std::string>(metrics_text(status(), sources_.body()))};
+                              .body = std::make_shared<const std::string>(metrics_text(status()))};
                }});
   add("/api/v1/openapi.json", "This API as OpenAPI 3.1.", {}, "openapi", [this](const Call&) {
     if (!openapi_) openapi_ = std::make_shared<const std::string>(openapi_text(routes_, KINEMAP_VERSION));
@@ -97,7 +97,8 @@ void Api::look(std::chrono::steady_clock::time_point now) {
 }
 
 Status Api::status() {
-  return {now_s() - started_s_, suit_, suit_port_, sources_.suit(), sources_.pipeline(), sources_.map(), counts_};
+  return {now_s() - started_s_, suit_,          suit_port_,      sources_.suit(),
+          sources_.pipeline(),  sources_.map(), sources_.body(), counts_};
 }
 
 std::string Api::status_text() { return kinemap::status_text(status()); }

@@ -9,6 +9,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds(Clock::time_point time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); }
+
 /// Key poses come by the dozen, each worth a step; all else is announced to others and must be safe before.
 bool can_wait(const journal::Entry& entry) {
   return std::holds_alternative<KeyPose>(entry) || std::holds_alternative<journal::StreamMark>(entry) ||
@@ -30,6 +32,8 @@ JournalFile::~JournalFile() {
 
 void JournalFile::append(const journal::Entry& entry) {
   ++stats_.entries;
+  ++stats_.unsafe_entries;
+  if (stats_.unsafe_since_s < 0.0) stats_.unsafe_since_s = seconds(Clock::now());
   const std::string record =
       std::exchange(new_, false) ? journal::header() + journal::record(entry) : journal::record(entry);
   if (!file_.append(record)) ++stats_.lost_entries;  // a gap, which mend() closes when it is read
@@ -37,9 +41,9 @@ void JournalFile::append(const journal::Entry& entry) {
 }
 
 void JournalFile::retry() {
-  if (file_.healthy()) return;
-  file_.append({});
-  if (file_.healthy()) sync();
+  const bool refused = !file_.healthy();
+  if (refused) file_.append({});
+  if (file_.healthy() && (refused || Clock::now() >= next_sync_)) sync();
 }
 
 void JournalFile::sync() {
@@ -49,7 +53,14 @@ void JournalFile::sync() {
   if (file_.unsynced()) return;
   next_sync_ = Clock::now() + sync_every_;
   ++stats_.syncs;
+  note_safe();
   stats_.longest_sync_s = std::max(stats_.longest_sync_s, std::chrono::duration<double>(Clock::now() - begin).count());
+}
+
+void JournalFile::note_safe() {
+  if (file_.waiting_bytes() > 0) return;
+  stats_.unsafe_entries = 0;
+  stats_.unsafe_since_s = -1.0;
 }
 
 JournalStats JournalFile::stats() const {

@@ -17,7 +17,11 @@ struct JournalStats {
   std::uint64_t lost_entries = 0;   ///< given up since too much was waiting
   std::uint64_t syncs = 0;          ///< times that the disk said it has it all
   double longest_sync_s = 0.0;
-  bool healthy = true;  ///< false: the disk does not take what it is given; mapping goes on in memory
+  bool healthy = true;               ///< false: the disk does not take what it is given; mapping goes on in memory
+  std::uint64_t unsafe_entries = 0;  ///< that the disk has not said yet that it has
+  double unsafe_since_s = -1.0;      ///< when the oldest of them came, s of the steady clock; negative: there is none
+  std::uint64_t free_bytes = 0;      ///< of the disk
+  std::uint64_t min_free_bytes = 0;  ///< with less, writing is suspended
 };
 
 /// The journal of the session under way, appended to. The mapping never stops for the disk (AppendFile). One thread.
@@ -37,13 +41,14 @@ class JournalFile {
   /// system (key poses, which are synced once in `sync_every`); or, with `healthy` false, when it waits in memory.
   void append(const journal::Entry& entry);
 
-  /// Tries again to write what the disk refused.
+  /// Tries again to write what the disk refused, and syncs what is due.
   void retry();
 
   [[nodiscard]] JournalStats stats() const;
 
  private:
   void sync();
+  void note_safe();
 
   AppendFile file_;
   std::chrono::milliseconds sync_every_;

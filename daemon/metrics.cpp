@@ -2,10 +2,8 @@
 #include "daemon/metrics.hpp"
 
 #include <array>
-#include <cmath>
 #include <utility>
 
-#include "core/pose.hpp"
 #include "daemon/metrics_text.hpp"
 #include "daemon/process_stats.hpp"
 #include "daemon/stream_counters.hpp"
@@ -101,15 +99,12 @@ void write_tracker(MetricsText& out, const PipelineStats& pipeline) {
   out.counter("kinemap_tracker_path_meters_total", "Length of the way walked.", tracker.path_m);
 }
 
-/// By how much the map's correction moves and turns the wearer, against what the suit says.
-void write_drift(MetricsText& out, const MapSnapshot& map, const LiveBody& body) {
-  if (!body.known) return;
-  const Pose T_odom_pelvis = body.T_odom(Segment::Pelvis);
-  const Eigen::Vector3d x_map = map.T_map_odom.q * Eigen::Vector3d::UnitX();
+void write_drift(MetricsText& out, const Status& status) {
+  const auto drift = corrected_drift(status);
+  if (!drift) return;
   out.gauge("kinemap_drift_corrected_meters", "How far from where the suit says the wearer is on the map.",
-            ((map.T_map_odom * T_odom_pelvis).p - T_odom_pelvis.p).norm());
-  out.gauge("kinemap_drift_corrected_radians", "How far the heading is turned against the suit's.",
-            std::abs(std::atan2(x_map.y(), x_map.x())));
+            drift->distance_m);
+  out.gauge("kinemap_drift_corrected_radians", "How far the heading is turned against the suit's.", drift->turn_rad);
 }
 
 void write_map(MetricsText& out, const Status& status) {
@@ -144,10 +139,17 @@ void write_journal(MetricsText& out, const PipelineStats& pipeline) {
   out.gauge("kinemap_journal_enabled", "1 where sessions are kept on disk.", std::uint64_t{pipeline.has_journal});
   if (!pipeline.has_journal) return;
   const JournalStats& journal = pipeline.journal;
-  out.gauge("kinemap_journal_healthy", "0 while the disk does not take what it is given.",
+  out.gauge("kinemap_journal_healthy",
+            "0 while writing is suspended: the disk does not take it, or less than journal.min_free_mb is free.",
             std::uint64_t{journal.healthy});
   out.gauge("kinemap_journal_file_bytes", "Length of the session's journal.", journal.bytes);
   out.gauge("kinemap_journal_waiting_bytes", "What the disk has not taken yet.", journal.waiting_bytes);
+  out.gauge("kinemap_journal_lag_entries", "What has happened and is not safe on the disk yet.",
+            pipeline.journal_lag_entries);
+  out.gauge("kinemap_journal_lag_seconds", "For how long the oldest of these has not been.", pipeline.journal_lag_s);
+  out.gauge("kinemap_disk_free_bytes", "Free on the disk of the sessions.", journal.free_bytes);
+  out.gauge("kinemap_disk_min_free_bytes", "With less, writing is suspended (journal.min_free_mb).",
+            journal.min_free_bytes);
   out.counter("kinemap_journal_entries_total", "Entries handed to the journal.", journal.entries);
   out.counter("kinemap_journal_lost_entries_total", "Entries given up since too much was waiting.",
               journal.lost_entries);
@@ -194,7 +196,7 @@ void write_clients(MetricsText& out, const ApiCounts& api) {
 
 }  // namespace
 
-std::string metrics_text(const Status& status, const LiveBody& body) {
+std::string metrics_text(const Status& status) {
   MetricsText out;
   write_process(out, status);
   write_suit(out, status);
@@ -203,7 +205,7 @@ std::string metrics_text(const Status& status, const LiveBody& body) {
   write_tracker(out, status.pipeline);
   write_solver(out, status.pipeline.solver);
   write_map(out, status);
-  write_drift(out, *status.map, body);
+  write_drift(out, status);
   write_journal(out, status.pipeline);
   write_recording(out, status.pipeline);
   write_clients(out, status.api);

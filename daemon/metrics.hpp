@@ -3,12 +3,11 @@
 
 #include <string>
 
-#include "daemon/live_body.hpp"
 #include "daemon/status.hpp"
 
 namespace kinemap {
 
 /// /metrics, in Prometheus' text format; daemon/README.md says what to look at.
-std::string metrics_text(const Status& status, const LiveBody& body);
+std::string metrics_text(const Status& status);
 
 }  // namespace kinemap

@@ -87,6 +87,11 @@ bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 PipelineStats Pipeline::stats() const {
   const Recorder* recorder = journal_ ? journal_->recorder() : nullptr;
+  const auto unwritten = unwritten_.stats();
+  const auto journal = journal_stats_.get();
+  // A disk that hangs keeps the journal's thread from telling what it is at.
+  const double writing_s = writing_since_s_.load(std::memory_order_relaxed);
+  const double since_s = journal.unsafe_since_s >= 0.0 ? journal.unsafe_since_s : writing_s;
   return {tracker_stats_.get(),
           tracker_steps_.get(),
           solver_stats_.get(),
@@ -95,8 +100,10 @@ PipelineStats Pipeline::stats() const {
           notices_.stats(),
           events_held_back_.load(std::memory_order_relaxed),
           journal_ != nullptr,
-          unwritten_.stats(),
-          journal_stats_.get(),
+          unwritten,
+          journal,
+          unwritten.fill + journal.unsafe_entries + (journal.unsafe_since_s < 0.0 && writing_s >= 0.0 ? 1U : 0U),
+          since_s >= 0.0 ? now_s() - since_s : 0.0,
           entries_restored_.load(std::memory_order_relaxed),
           entries_to_restore_,
           recorder != nullptr,
@@ -192,9 +199,11 @@ void Pipeline::record(const std::stop_token& stop) {
     auto entry = unwritten_.pop();
     if (entry) {
       sessions_written_ += std::holds_alternative<journal::SessionStart>(**entry);
+      writing_since_s_.store(now_s(), std::memory_order_relaxed);
       journal_->append(**entry);
       note_map();
       journal_stats_.set(journal_->stats());
+      writing_since_s_.store(-1.0, std::memory_order_relaxed);
       push(events_, std::move(*entry), stop);
     } else if (stop.stop_requested()) {
       return note_map();  // all is written

@@ -51,6 +51,9 @@ struct PipelineStats {
   bool has_journal = false;
   RingStats unwritten;  ///< on their way to the journal
   JournalStats journal;
+  /// What happened and is not safe on the disk yet: entries, and for how long the oldest has not been.
+  std::uint64_t journal_lag_entries = 0;
+  double journal_lag_s = 0.0;
   std::uint64_t entries_restored = 0;    ///< of the session that was found at the start
   std::uint64_t entries_to_restore = 0;  ///< so many it has
   bool has_recorder = false;
@@ -158,6 +161,7 @@ class Pipeline {
   LatestValue<SolverStats> solver_stats_;           // solver → everyone who asks
   std::atomic<std::uint64_t> events_held_back_{0};  // detection → everyone who asks
   LatestValue<JournalStats> journal_stats_;         // journal → everyone who asks
+  std::atomic<double> writing_since_s_{-1.0};       // journal → everyone who asks; negative: nothing is being written
   std::atomic<std::uint64_t> entries_restored_{0};  // solver → everyone who asks
   LatestValue<Published> published_;                // solver → journal
 

@@ -44,6 +44,15 @@ void SessionJournal::append(const journal::Entry& entry) {
   if (recorder_ && file_) recorder_->begin(store_.files().folder_of(id_));
 }
 
+JournalStats SessionJournal::stats() const {
+  JournalStats stats = file_ ? file_->stats() : JournalStats{};
+  std::error_code ignored;
+  if (const auto space = std::filesystem::space(store_.files().directory(), ignored); !ignored)
+    stats.free_bytes = space.available;
+  stats.min_free_bytes = bytes(config_.min_free_mb);
+  return stats;
+}
+
 void SessionJournal::begin(const std::string& id, std::uint64_t length) {
   file_.reset();  // what waits of the session before is written first
   id_ = id;

@@ -30,7 +30,7 @@ class SessionJournal {
   void retry() {
     if (file_) file_->retry();
   }
-  [[nodiscard]] JournalStats stats() const { return file_ ? file_->stats() : JournalStats{}; }
+  [[nodiscard]] JournalStats stats() const;
   /// Null where the suit is not recorded. Its own threads' rules hold.
   [[nodiscard]] Recorder* recorder() const { return recorder_.get(); }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/pose.hpp"
 #include "daemon/process_stats.hpp"
 #include "daemon/stream_counters.hpp"
 #include "protocol/json_text.hpp"
@@ -98,6 +99,10 @@ Json journal_json(const PipelineStats& p) {
           {"waiting_entries", p.unwritten.fill},
           {"waiting_bytes", j.waiting_bytes},
           {"lost_entries", j.lost_entries},
+          {"lag_entries", p.journal_lag_entries},
+          {"lag_s", rounded(p.journal_lag_s)},
+          {"free_bytes", j.free_bytes},
+          {"min_free_bytes", j.min_free_bytes},
           {"longest_sync_s", rounded(j.longest_sync_s, 1e6)},
           {"restored_entries", p.entries_restored},
           {"entries_to_restore", p.entries_to_restore}};
@@ -129,6 +134,8 @@ Json map_json(const Status& status) {
                 {{"messages", solver.messages},
                  {"longest_s", rounded(solver.longest_s, 1e6)},
                  {"busy_s", rounded(solver.busy_s)}}}};
+  if (const auto drift = corrected_drift(status))
+    json["drift"] = {{"distance", rounded(drift->distance_m)}, {"turn", rounded(drift->turn_rad)}};
   if (map.hand)
     json["hand"] = {{"part", to_string(map.hand->part)},
                     {"probability", rounded(map.hand->probability)},
@@ -159,6 +166,14 @@ Json api_json(const ApiCounts& api) {
 Json process_json() { return {{"pid", ::getpid()}, {"rss_bytes", process_stats().resident_bytes}}; }
 
 }  // namespace
+
+std::optional<Drift> corrected_drift(const Status& status) {
+  if (!status.body.known) return std::nullopt;
+  const Pose& T_map_odom = status.map->T_map_odom;
+  const Pose T_odom_pelvis = status.body.T_odom(Segment::Pelvis);
+  const Eigen::Vector3d x_map = T_map_odom.q * Eigen::Vector3d::UnitX();
+  return Drift{((T_map_odom * T_odom_pelvis).p - T_odom_pelvis.p).norm(), std::abs(std::atan2(x_map.y(), x_map.x()))};
+}
 
 bool is_receiving(const ReceiverState& suit) {
   return suit.counts.last_frame_s >= 0.0 && suit.now_s - suit.counts.last_frame_s < kSilenceS;

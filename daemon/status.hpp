@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/map.hpp"
@@ -40,8 +41,17 @@ struct Status {
   ReceiverState suit;
   PipelineStats pipeline;
   std::shared_ptr<const MapSnapshot> map;
+  LiveBody body;
   ApiCounts api;
 };
+
+/// By how much the map's correction moves and turns the wearer, against what the suit says.
+struct Drift {
+  double distance_m = 0.0;
+  double turn_rad = 0.0;
+};
+/// Nullopt before the first frame.
+std::optional<Drift> corrected_drift(const Status& status);
 
 /// Frames came within the last 2 s.
 bool is_receiving(const ReceiverState& suit);

@@ -78,7 +78,7 @@ TEST(MetricsText, EscapesAndNumbers) {
 }
 
 TEST(Metrics, HistogramsAreCumulativeAndEndWithAll) {
-  const std::string text = metrics_text(sample_status(), {});
+  const std::string text = metrics_text(sample_status());
   EXPECT_THAT(text, HasSubstr("# TYPE kinemap_tracker_step_seconds histogram\n"));
   EXPECT_THAT(text, HasSubstr("kinemap_tracker_step_seconds_bucket{le=\"2.5e-06\"} 0\n"));
   EXPECT_THAT(text, HasSubstr("kinemap_tracker_step_seconds_bucket{le=\"5e-06\"} 2\n"));
@@ -110,7 +110,8 @@ TEST(Metrics, NoCounterIsLeftOut) {
                     &tracker.contacts_thinned_out, &status.pipeline.events_held_back})
     numbers.push_back(*one = 4'000'000 + numbers.size());
   auto& journal = status.pipeline.journal;
-  for (auto* one : {&journal.entries, &journal.bytes, &journal.waiting_bytes, &journal.lost_entries, &journal.syncs})
+  for (auto* one : {&journal.entries, &journal.bytes, &journal.waiting_bytes, &journal.lost_entries, &journal.syncs,
+                    &journal.free_bytes, &journal.min_free_bytes, &status.pipeline.journal_lag_entries})
     numbers.push_back(*one = 5'000'000 + numbers.size());
   status.pipeline.has_recorder = true;
   auto& recorder = status.pipeline.recorder;
@@ -118,10 +119,11 @@ TEST(Metrics, NoCounterIsLeftOut) {
     numbers.push_back(*one = 7'000'000 + numbers.size());
   auto& api = status.api;
   for (auto* one : {&api.streams, &api.accepted, &api.refused, &api.requests, &api.errors, &api.messages_skipped,
-                    &api.slow_clients_closed})
+                    &api.slow_clients_closed, &api.slow_requests_closed, &api.gave_way, &api.displaced, &api.revoked,
+                    &api.handshakes_failed, &api.unauthorized, &api.forbidden, &api.throttled})
     numbers.push_back(*one = 6'000'000 + numbers.size());
 
-  const std::string text = metrics_text(status, {});
+  const std::string text = metrics_text(status);
   for (const auto number : numbers) EXPECT_THAT(text, HasSubstr(fmt::format(" {}\n", number)));
 }
 
@@ -130,11 +132,13 @@ TEST(Metrics, DriftIsHowFarTheMapMovesTheWearer) {
   MapSnapshot map;
   map.T_map_odom = {{0, 3, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()))};
   status.map = std::make_shared<const MapSnapshot>(map);
-  EXPECT_THAT(metrics_text(status, {}), Not(HasSubstr("drift")));  // no suit yet
+  EXPECT_THAT(metrics_text(status), Not(HasSubstr("drift")));  // no suit yet
   // (4, 0) turned is (0, 4), shifted (0, 7): 8.06 m from (4, 0).
-  const std::string text = metrics_text(status, test::body_at(1.0, {4, 0, 1}));
+  status.body = test::body_at(1.0, {4, 0, 1});
+  const std::string text = metrics_text(status);
   EXPECT_THAT(text, HasSubstr("kinemap_drift_corrected_meters 8.06225774829855\n"));
   EXPECT_THAT(text, HasSubstr("kinemap_drift_corrected_radians 1.570796326794896"));
+  EXPECT_THAT(status_text(status), HasSubstr(R"("drift":{"distance":8.062,"turn":1.571})"));
 }
 
 TEST(Metrics, AreServedAsText) {

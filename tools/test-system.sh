@@ -213,6 +213,20 @@ removed() {
   test -f "$root/etc/kinemap/config.json"
   test -d "$root/var/lib/private/kinemap/sessions"
 }
+# What `kinemap pair` wrote goes with the package, what the administrator put beside it stays.
+pair_purged() {
+  in_bare_root kinemap pair --host 127.0.0.1
+  grep -q 0.0.0.0 "$root/etc/kinemap/conf.d/remote.json"
+  in_bare_root kinemapd --config /etc/kinemap/config.json --print-config | grep -F '"address": "0.0.0.0"'
+  test -f "$root/etc/credstore/kinemap.key"
+  echo '{"api": {"max_clients": 32}}' >"$root/etc/kinemap/conf.d/site.json"
+  openssl ecparam -genkey -name prime256v1 -noout -out "$root/etc/credstore/kinemap.key"
+  in_bare_root dpkg --purge kinemap
+  local left
+  left=$(cd "$root" && find etc/kinemap etc/credstore -type f | sort | tr '\n' ' ')
+  [[ $left == "etc/credstore/kinemap.key etc/kinemap/conf.d/site.json " ]] || { echo "left: $left" && return 1; }
+  rm -r "$root/etc/credstore/kinemap.key" "$root/etc/kinemap"
+}
 purged() {
   inside dpkg --purge kinemap
   local left
@@ -231,6 +245,8 @@ cp "$first" "$second" "$work/session/session.pcap" "$root/root/"
 
 if command -v lintian >/dev/null; then step "lintian has nothing to remark" remarked "$first"; fi
 step "installed in a bare root file system: enabled, default configuration" installed "$first"
+step "purge takes what kinemap pair wrote, and leaves what the administrator did" pair_purged
+step "installed again" installed "$first"
 can_contain || skip "systemd-nspawn cannot make a container here: $(tail -n 1 "$work/step.log")"
 start_container
 booted >"$work/step.log" 2>&1 || skip "a bare Debian does not boot under systemd-nspawn here: $(tail -n 1 "$work/step.log")"

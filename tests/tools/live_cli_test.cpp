@@ -173,7 +173,8 @@ TEST(Doctor, WithoutADaemonItListensItself) {
   EXPECT_TRUE(says(silent["suit"], "problem", "port " + std::to_string(doctor.suit))) << silent;
   EXPECT_TRUE(says(silent["suit"], "problem", "Network Streamer")) << silent;
   EXPECT_TRUE(says(silent["disk"], "ok", "GiB free")) << silent;
-  for (const char* subject : {"service", "firewall", "buffer", "clock"}) EXPECT_TRUE(silent.contains(subject));
+  for (const char* subject : {"access", "service", "firewall", "buffer", "clock"})
+    EXPECT_TRUE(silent.contains(subject));
 
   {
     const std::jthread sender([&](const std::stop_token& stop) {
@@ -191,6 +192,43 @@ TEST(Doctor, WithoutADaemonItListensItself) {
   const Background sim({KINEMAP_BIN, "sim", "--udp", "127.0.0.1:" + std::to_string(doctor.suit)},
                        (doctor.root / "sim.log").string());
   EXPECT_TRUE(says(doctor.ask("30")["suit"], "ok", "MVN's stream comes"));
+}
+
+TEST(Doctor, LetsTheDaemonStartWhileItListens) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can listen beside others";
+  const Doctor doctor;
+  const Background listens({KINEMAP_BIN, "doctor", "--config", doctor.config, "--listen", "60"},
+                           (doctor.root / "doctor.log").string());
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it may be slower: then it is no test of anything
+  const Background daemon({KINEMAPD_BIN, "--config", doctor.config}, (doctor.root / "daemon.log").string());
+  EXPECT_TRUE(within(std::chrono::seconds(30), [&] {
+    return run_command({KINEMAP_BIN, "status", "--url", "127.0.0.1:" + std::to_string(doctor.port)}).code == 0;
+  })) << slurp((doctor.root / "daemon.log").string());
+}
+
+TEST(Doctor, WhoMayNotListenBesideOthersSaysThatItHoldsThePort) {
+  const Doctor doctor;
+  const std::vector<std::string> ask{KINEMAP_BIN, "doctor", "--config", doctor.config, "--listen", "0.2"};
+  std::vector<std::string> line = ask;
+  if (::geteuid() == 0) line.insert(line.begin(), {"/usr/bin/setpriv", "--bounding-set=-net_raw"});
+  const Ran ran = run_command(line);
+  EXPECT_NE(ran.err.find("holds UDP port " + std::to_string(doctor.suit)), std::string::npos) << ran.err;
+  EXPECT_NE(ran.out.find("nothing came to UDP port"), std::string::npos) << ran.out;
+}
+
+TEST(Doctor, ShowsTheDaemonWhatItsConfigurationAsksFor) {
+  Doctor doctor;
+  ASSERT_EQ(run_command({KINEMAP_BIN, "pair", "--config", doctor.config, "--host", "127.0.0.1"}).code, 0);
+  doctor.settings["api"]["auth"] = "always";
+  doctor.save();
+  const Background daemon({KINEMAPD_BIN, "--config", doctor.config}, (doctor.root / "daemon.log").string());
+  EXPECT_TRUE(within(std::chrono::seconds(30), [&] { return says(doctor.ask("0.1")["daemon"], "ok", "https://"); }))
+      << slurp((doctor.root / "daemon.log").string()) << doctor.ask("0.1");
+  EXPECT_TRUE(says(doctor.ask("0.1")["access"], "ok", "token and TLS"));
+  fs::permissions(doctor.root / "kinemap.tokens", fs::perms::others_read, fs::perm_options::add);
+  EXPECT_TRUE(says(doctor.ask("0.1")["access"], "problem", "others may read"));
+  fs::remove(doctor.root / "conf.d/remote.json");
+  EXPECT_TRUE(says(doctor.ask("0.1")["access"], "problem", "wants a token"));
 }
 
 TEST(Doctor, AsksTheRunningDaemon) {

@@ -53,6 +53,7 @@ TEST_F(Pair, WritesWhatOnlyTheOwnerMayReadAndAsksForTheSameAgain) {
     struct stat info {};
     ASSERT_EQ(::stat((folder_ / "kinemap" / name).c_str(), &info), 0) << name;
     EXPECT_EQ(info.st_mode & 07777U, 0600U) << name;
+    EXPECT_THAT(slurp(folder_ / "kinemap" / name), HasSubstr("made by `kinemap pair`")) << "or purge leaves it";
   }
   EXPECT_EQ(first["token"].get<std::string>().size(), 32U);
   EXPECT_EQ(paired(), first);

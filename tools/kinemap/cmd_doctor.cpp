@@ -6,6 +6,7 @@
 #include "protocol/json_text.hpp"
 #include "tools/kinemap/command.hpp"
 #include "tools/kinemap/doctor.hpp"
+#include "tools/kinemap/pairing.hpp"
 #include "tools/kinemap/text_table.hpp"
 
 namespace kinemap::cli {
@@ -14,12 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Verdict = Finding::Verdict;
 
-constexpr const char* kServiceConfig = "/etc/kinemap/config.json";
-
 struct Options {
   DaemonOptions daemon;
   std::string config;
-  double listen_s = 3.0;
+  double listen_s = 1.0;
   bool json = false;
 };
 
@@ -28,11 +27,7 @@ const char* to_string(Verdict verdict) {
 }
 
 /// The configuration in force, or, when it is wrong, the defaults: the other checks still tell something.
-Config read_config(const std::string& given, Findings& findings) {
-  std::error_code ignored;
-  const std::string path = !given.empty()                                     ? given
-                           : std::filesystem::exists(kServiceConfig, ignored) ? kServiceConfig
-                                                                              : "";
+Config read_config(const std::string& path, Findings& findings) {
   if (path.empty()) {
     findings.push_back({Verdict::Ok, "config", "no file; everything has its default", ""});
     return {};
@@ -45,12 +40,22 @@ Config read_config(const std::string& given, Findings& findings) {
   return config ? *config : Config{};
 }
 
-/// The daemon that was named, or the one that the configuration makes.
-Result<DaemonAddress> daemon_address(const Options& options, const Config& config) {
+/// The file that was named, or else the service's; empty when there is none.
+std::string config_path(const Options& options) {
+  std::error_code ignored;
+  if (!options.config.empty()) return options.config;
+  return std::filesystem::exists(kServiceConfig, ignored) ? kServiceConfig : "";
+}
+
+/// The daemon that was named, or the one that the configuration makes, with what that one wants to be shown.
+Result<DaemonAddress> daemon_address(const Options& options, const Config& config, const Access& access) {
   auto daemon = daemon_of(options.daemon);
   if (!daemon || !options.daemon.url.empty() || std::getenv("KINEMAP_URL") != nullptr) return daemon;
   const bool any = config.api.address == "0.0.0.0" || config.api.address == "::";
   daemon->endpoint = {any ? "127.0.0.1" : config.api.address, config.api.port};
+  daemon->tls = access.tls;
+  if (daemon->token.empty()) daemon->token = access.token;
+  if (daemon->fingerprint.empty()) daemon->fingerprint = access.fingerprint;
   return daemon;
 }
 
@@ -74,9 +79,12 @@ std::string findings_json(const Findings& findings) {
 
 int doctor(const Options& options) {
   Findings findings;
-  const Config config = read_config(options.config, findings);
-  const auto daemon = daemon_address(options, config);
+  const std::string path = config_path(options);
+  const Config config = read_config(path, findings);
+  const Access access = check_access(config, path);
+  const auto daemon = daemon_address(options, config, access);
   if (!daemon) return fail("doctor", daemon.error(), kUsage);
+  findings.push_back(access.finding);
   findings.push_back(check_service());
   Json status;
   findings.push_back(check_daemon(config, *daemon, status));
@@ -94,14 +102,14 @@ int doctor(const Options& options) {
 
 void add_doctor(CLI::App& app, Run& run) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      add_command(app, run, "doctor", "What keeps Kinemap from mapping on this machine, and what to do about it",
-                  "  kinemap doctor\n"
-                  "  kinemap doctor --config my.json --listen 10\n"
-                  "\nChecks configuration, service, daemon, suit, firewall, receive buffer, clock and disk. Where no "
-                  "kinemapd runs, "
-                  "it listens\nto the suit's port itself. Exit code 1 when there is a problem; notes are none.\n",
-                  options, doctor);
+  CLI::App* command = add_command(
+      app, run, "doctor", "What keeps Kinemap from mapping on this machine, and what to do about it",
+      "  kinemap doctor\n"
+      "  kinemap doctor --config my.json --listen 10\n"
+      "\nChecks configuration, access, service, daemon, suit, firewall, receive buffer, clock and disk. Where "
+      "no kinemapd runs,\nit listens to the suit's port itself: as root beside everything else, else so "
+      "that kinemapd cannot\nstart meanwhile. Exit code 1 when there is a problem; notes are none.\n",
+      options, doctor);
   add_daemon_options(*command, options->daemon);
   command
       ->add_option("--config", options->config,

@@ -26,11 +26,20 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
+/// How the daemon of this configuration guards itself, and so what it is to be shown.
+struct Access {
+  Finding finding;
+  bool tls = false;
+  std::string token, fingerprint;  ///< empty: none is needed, or this user may not read it
+};
+/// `config_path`: empty where there is no file. Reads tokens and certificate as kinemapd does.
+Access check_access(const Config& config, const std::string& config_path);
+
 /// Whether a kinemapd answers at `daemon`, and if not, whether it could be started. `status` becomes the daemon's
 /// /api/v1/status, or null.
 Finding check_daemon(const Config& config, const DaemonAddress& daemon, nlohmann::ordered_json& status);
 /// Whether the suit's stream arrives: what the running daemon says of it, or, where none runs, what comes to the port
-/// within `listen_s`.
+/// within `listen_s`. As root the port stays free meanwhile; else nothing else can open it, which is said on stderr.
 Findings check_suit(const Config& config, const nlohmann::ordered_json& status, double listen_s);
 
 // Of the system; doctor_system.cpp.

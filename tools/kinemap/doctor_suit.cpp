@@ -4,12 +4,16 @@
 #include <net/if.h>
 
 #include <array>
+#include <boost/asio/generic/raw_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/udp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "protocol/text_format.hpp"
@@ -97,38 +101,73 @@ std::optional<Finding> losses_by_daemon(const Json& status) {
   return std::nullopt;
 }
 
-/// The first datagram that comes to the open socket within the time.
-std::optional<std::vector<std::byte>> first_datagram(asio::io_context& io, asio::ip::udp::socket& socket,
-                                                     double listen_s) {
-  std::vector<std::byte> buffer(65536);
-  std::optional<std::size_t> size;
+constexpr std::size_t kUdpHeader = 8;
+
+/// What was sent to this UDP port, of an IPv4 packet as a raw socket has it, with its header.
+std::optional<std::span<const std::byte>> payload_of(std::span<const std::byte> packet, std::uint16_t port) {
+  if (packet.empty()) return std::nullopt;
+  const std::size_t begin = 4 * (std::to_integer<std::size_t>(packet[0]) & 15U);
+  if (packet.size() < begin + kUdpHeader) return std::nullopt;
+  const auto to = std::to_integer<unsigned>(packet[begin + 2]) << 8U | std::to_integer<unsigned>(packet[begin + 3]);
+  if (to != port) return std::nullopt;
+  return packet.subspan(begin + kUdpHeader);
+}
+
+/// The first datagram that comes to the socket within the time; of a raw one, the first for this port.
+template <class Socket>
+std::optional<std::vector<std::byte>> first_datagram(asio::io_context& io, Socket& socket,
+                                                     std::optional<std::uint16_t> raw_port, double listen_s) {
+  std::vector<std::byte> buffer(65536), found;
+  bool heard = false;
   asio::steady_timer timer(io, std::chrono::milliseconds(static_cast<int>(1000.0 * listen_s)));
   timer.async_wait([&](ErrorCode) { socket.cancel(); });
-  socket.async_receive(asio::buffer(buffer.data(), buffer.size()), [&](ErrorCode error, std::size_t received) {
-    if (!error) size = received;
-    timer.cancel();
-  });
+  std::function<void()> receive = [&] {
+    socket.async_receive(asio::buffer(buffer.data(), buffer.size()), [&](ErrorCode error, std::size_t size) {
+      if (error) return;
+      const std::span<const std::byte> packet(buffer.data(), size);
+      const auto payload = raw_port ? payload_of(packet, *raw_port) : std::optional(packet);
+      if (!payload) return receive();
+      heard = true;
+      found.assign(payload->begin(), payload->end());
+      timer.cancel();
+    });
+  };
+  receive();
   io.run();
-  if (!size) return std::nullopt;
-  buffer.resize(*size);
-  return buffer;
+  return heard ? std::optional(std::move(found)) : std::nullopt;
+}
+
+/// A raw socket, which only root may open, hears the suit while its port stays free for kinemapd.
+std::optional<std::vector<std::byte>> first_datagram(const Config& config, double listen_s) {
+  asio::io_context io;
+  ErrorCode error;
+  const asio::ip::udp::endpoint at(asio::ip::make_address(config.suit.address, error), config.suit.port);
+  if (at.address().is_v4()) {  // to the IPv6 port come IPv4 datagrams too, which a raw IPv6 socket does not hear
+    asio::generic::raw_protocol::socket beside(io);
+    beside.open(asio::generic::raw_protocol(AF_INET, IPPROTO_UDP), error);
+    if (!error) beside.bind(asio::generic::raw_protocol::endpoint(at.data(), at.size(), IPPROTO_UDP), error);
+    if (!error) return first_datagram(io, beside, at.port(), listen_s);
+  }
+  asio::ip::udp::socket socket(io);
+  socket.open(at.protocol(), error);
+  if (!error) socket.bind(at, error);
+  if (error) return std::nullopt;
+  std::fprintf(stderr, "kinemap doctor: holds UDP port %d for %g s; kinemapd cannot start meanwhile (root need not)\n",
+               config.suit.port, listen_s);
+  return first_datagram(io, socket, std::nullopt, listen_s);
 }
 
 Finding suit_by_listening(const Config& config, double listen_s) {
-  asio::io_context io;
-  asio::ip::udp::socket socket(io);
-  ErrorCode error;
-  const asio::ip::udp::endpoint endpoint(asio::ip::make_address(config.suit.address, error), config.suit.port);
-  if (!error) socket.open(endpoint.protocol(), error);
-  if (!error) socket.bind(endpoint, error);
-  if (error)
+  if (const ErrorCode error = bind_error<asio::ip::udp>(config.suit.address, config.suit.port))
     return {Verdict::Problem, "suit",
             format("UDP port %d on %s cannot be opened: %s", config.suit.port, config.suit.address.c_str(),
                    error.message().c_str()),
-            format("end what holds it (sudo ss -lunp 'sport = :%d'), or choose another suit.port", config.suit.port)};
-  const auto datagram = first_datagram(io, socket, listen_s);
+            format("end what holds it (sudo ss -lunp 'sport = :%d'; a kinemapd that could not be asked?), or choose "
+                   "another suit.port",
+                   config.suit.port)};
+  const auto datagram = first_datagram(config, listen_s);
   if (!datagram)
-    return {Verdict::Problem, "suit", format("nothing came to UDP port %d within %.0f s", config.suit.port, listen_s),
+    return {Verdict::Problem, "suit", format("nothing came to UDP port %d within %g s", config.suit.port, listen_s),
             streamer_advice(config)};
   if (const auto decoded = mxtp::decode(*datagram); const auto* fault = std::get_if<mxtp::Fault>(&decoded))
     return {Verdict::Problem, "suit",

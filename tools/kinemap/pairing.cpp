@@ -28,6 +28,9 @@ namespace fs = std::filesystem;
 
 constexpr int kDays = 825;  // what Apple's systems accept at most
 constexpr int kRenewDays = 30;
+// All that is written says who made it: purging the package removes that, and nothing else. PEM allows text before it.
+constexpr const char* kKeyMadeBy = "kinemapd's key; made by `kinemap pair`.\n";
+constexpr const char* kCertificateMadeBy = "kinemapd's certificate; made by `kinemap pair`.\n";
 
 /// Makes the folder where there is none; only its owner may look into a new one that is to hold secrets.
 std::optional<Error> make_folder(const fs::path& folder, mode_t mode) {
@@ -66,7 +69,8 @@ Result<std::string> random_token() {
   return token;
 }
 
-/// The first token of that scope; the file has been checked.
+}  // namespace
+
 std::string token_in(const std::string& text, const std::string& scope) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
@@ -76,8 +80,6 @@ std::string token_in(const std::string& text, const std::string& scope) {
   }
   return {};
 }
-
-}  // namespace
 
 Pairing::Pairing(fs::path config)
     : config_(std::move(config)), secrets_(is_service() ? fs::path(kServiceCredentials) : config_.parent_path()) {}
@@ -118,8 +120,8 @@ Result<std::string> Pairing::certificate_of(const std::vector<std::string>& name
   }
   auto made = make_self_signed(names, kDays);
   if (!made) return Error{made.error()};
-  if (auto error = write_file(key(), made->key, 0600)) return std::move(*error);
-  if (auto error = write_file(certificate(), made->certificate, 0600)) return std::move(*error);
+  if (auto error = write_file(key(), kKeyMadeBy + made->key, 0600)) return std::move(*error);
+  if (auto error = write_file(certificate(), kCertificateMadeBy + made->certificate, 0600)) return std::move(*error);
   return made->certificate;
 }
 

@@ -44,6 +44,9 @@ class Pairing {
   std::filesystem::path config_, secrets_;
 };
 
+/// The first token of that scope in a file of tokens that is right; empty when there is none.
+std::string token_in(const std::string& text, const std::string& scope);
+
 /// This machine's addresses but loopback and link-local ones, IPv4 first, and its name.
 std::vector<std::string> own_addresses();
 std::string own_name();

@@ -22,9 +22,10 @@ class Daemon {
   /// certificate again, and says which other changes need a restart.
   void reconfigure(const Config& config);
 
-  /// Sign of life of the detection loop, for the watchdog (Pipeline::pulse).
+  /// Signs of life of the detection loop and the solver, for the watchdog (Pipeline::pulse).
   void ask_for_pulse() { pipeline_.ask_for_pulse(); }
   [[nodiscard]] std::uint64_t pulse() const { return pipeline_.pulse(); }
+  [[nodiscard]] SolverProgress solver_progress() const { return pipeline_.solver_progress(); }
   /// One line for `systemctl status`.
   [[nodiscard]] std::string summary() const;
 

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "daemon/config.hpp"
 #include "daemon/daemon.hpp"
@@ -22,6 +21,9 @@ constexpr const char* kDescription =
 constexpr const char* kFooter =
     "Signals: SIGINT and SIGTERM end it, SIGHUP rereads the configuration.\n"
     "Exit codes: 0 ended by a signal, 1 could not start, 2 wrong configuration or arguments, 3 a port is taken.";
+
+constexpr int kLooksAPeriod = 4;    // of the watchdog's
+constexpr int kSolverPeriods = 12;  // that the solver may be at one entry: two minutes, where optimising takes seconds
 
 struct Arguments {
   std::string config_path;
@@ -75,14 +77,17 @@ int run(const Arguments& arguments, const Config& config) {
   }
   Daemon& daemon = *std::get<std::unique_ptr<Daemon>>(started);
   notify_service_manager("READY=1");
-  // The watchdog hears of us as long as the detection loop comes round, not as long as this thread does.
-  std::uint64_t pulse = daemon.pulse();
+  // systemd hears of us as long as detection and solver get on, not as long as this thread does.
+  Watchdog watchdog(daemon.pulse(), daemon.solver_progress(), kLooksAPeriod * kSolverPeriods);
   const auto tick = [&] {
-    if (daemon.pulse() != std::exchange(pulse, daemon.pulse())) notify_service_manager("WATCHDOG=1");
+    const bool was_stuck = watchdog.solver_is_stuck();
+    if (watchdog.look(daemon.pulse(), daemon.solver_progress())) notify_service_manager("WATCHDOG=1");
+    if (watchdog.solver_is_stuck() && !was_stuck)
+      spdlog::critical("the solver does not come to an end; the watchdog is not fed any more");
     daemon.ask_for_pulse();
     notify_service_manager("STATUS=" + daemon.summary());
   };
-  const auto period = watchdog_period().value_or(std::chrono::seconds(20)) / 4;
+  const auto period = watchdog_period().value_or(std::chrono::seconds(20)) / kLooksAPeriod;
   tick();
   while (signals.wait(period, tick) == Signal::Reload) {
     notify_service_manager("RELOADING=1");

@@ -85,6 +85,11 @@ void Pipeline::ask_for_pulse() {
 
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
+SolverProgress Pipeline::solver_progress() const {
+  return {solver_steps_.load(std::memory_order_relaxed),
+          solver_at_work_.load(std::memory_order_relaxed) || events_.stats().fill > 0};
+}
+
 PipelineStats Pipeline::stats() const {
   const Recorder* recorder = journal_ ? journal_->recorder() : nullptr;
   const auto unwritten = unwritten_.stats();
@@ -247,7 +252,10 @@ void Pipeline::solve(const std::stop_token& stop) {
     }
     const auto optimisations = mapper_.snapshot()->graph.optimisations;
     const double begin_s = now_s();
+    solver_at_work_.store(true, std::memory_order_relaxed);
     take_entry(**message);
+    solver_at_work_.store(false, std::memory_order_relaxed);
+    solver_steps_.fetch_add(1, std::memory_order_relaxed);
     const double seconds = now_s() - begin_s;
     ++stats.messages;
     stats.events.add(seconds);
@@ -262,11 +270,14 @@ void Pipeline::solve(const std::stop_token& stop) {
 void Pipeline::restore(const std::stop_token& stop) {
   if (stored_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
+  solver_at_work_.store(true, std::memory_order_relaxed);
   for (const auto& entry : stored_) {
     if (stop.stop_requested()) return;
     journal::tell(mapper_, entry);
     entries_restored_.fetch_add(1, std::memory_order_relaxed);
+    solver_steps_.fetch_add(1, std::memory_order_relaxed);
   }
+  solver_at_work_.store(false, std::memory_order_relaxed);
   stored_ = {};
   publish();
   spdlog::info("journal: {} objects and {} key poses are back, after {:.1f} s", map_.get()->objects.size(),

@@ -22,6 +22,7 @@
 #include "daemon/resume.hpp"
 #include "daemon/ring.hpp"
 #include "daemon/session_journal.hpp"
+#include "daemon/watchdog.hpp"
 
 namespace kinemap {
 
@@ -104,6 +105,9 @@ class Pipeline {
   void ask_for_pulse();
   [[nodiscard]] std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
 
+  /// Any thread: how far the solver is, for the watchdog.
+  [[nodiscard]] SolverProgress solver_progress() const;
+
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
   [[nodiscard]] LiveBody live_body() const { return live_body_.get(); }
@@ -163,6 +167,8 @@ class Pipeline {
   LatestValue<JournalStats> journal_stats_;         // journal → everyone who asks
   std::atomic<double> writing_since_s_{-1.0};       // journal → everyone who asks; negative: nothing is being written
   std::atomic<std::uint64_t> entries_restored_{0};  // solver → everyone who asks
+  std::atomic<std::uint64_t> solver_steps_{0};      // solver → everyone who asks
+  std::atomic<bool> solver_at_work_{false};         // solver → everyone who asks
   LatestValue<Published> published_;                // solver → journal
 
   const MapperConfig mapper_config_;

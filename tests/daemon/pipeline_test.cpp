@@ -26,6 +26,18 @@ std::vector<SuitFrame> glider_frames(std::uint32_t count) {
   return frames;
 }
 
+TEST(Pipeline, TellsTheWatchdogThatTheSolverGoesOn) {
+  Pipeline pipeline{TrackerConfig{}, MapperConfig{}};
+  EXPECT_EQ(pipeline.solver_progress().steps, 0U);
+  for (const auto& frame : glider_frames(600)) pipeline.offer(frame);
+  pipeline.offer_silence();
+  EXPECT_TRUE(eventually([&] {
+    const auto stats = pipeline.stats();
+    return stats.tracker.frames == 600 && stats.solver.messages > 0 && !pipeline.solver_progress().has_work &&
+           pipeline.solver_progress().steps == pipeline.stats().solver.messages;
+  }));
+}
+
 TEST(Ring, RefusesAndCountsWhenFull) {
   Ring<int> ring(2);
   EXPECT_TRUE(ring.push(1));

@@ -54,6 +54,8 @@ struct MagneticField {
 struct SuitFrame {
   double time_s = 0.0;      ///< stream time since the first frame of this wearer; never decreases
   std::uint64_t index = 0;  ///< sample counter, unwrapped; gaps are lost samples
+  /// The sender's counter and time of day as they came (0: it has none); they tell its stream from another one.
+  std::uint32_t counter = 0, time_code_ms = 0;
   /// First frame after a restart of the suit, a reset of its origin or a change of the body: no odometry from the frame
   /// before.
   bool discontinuity = false;

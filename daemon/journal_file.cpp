@@ -14,7 +14,7 @@ double seconds(Clock::time_point time) { return std::chrono::duration<double>(ti
 /// Key poses come by the dozen, each worth a step; all else is announced to others and must be safe before.
 bool can_wait(const journal::Entry& entry) {
   return std::holds_alternative<KeyPose>(entry) || std::holds_alternative<journal::StreamMark>(entry) ||
-         std::holds_alternative<journal::Announced>(entry);
+         std::holds_alternative<journal::Announced>(entry) || journal::is_piece(entry);
 }
 
 }  // namespace

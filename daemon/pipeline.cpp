@@ -8,6 +8,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/reach.hpp"
 #include "protocol/journal_map.hpp"
 
 namespace kinemap {
@@ -21,6 +22,7 @@ std::int64_t unix_ms() {
 }
 
 constexpr double kMarkS = 1.0;        // between marks of the stream in the journal
+constexpr double kStrideS = 1.0;      // within this time one walks straight
 constexpr double kUnseenSpeed = 1.0;  // m/s that the wearer is taken to have walked while nobody looked
 
 std::vector<journal::Entry> stored_entries(SessionJournal* journal) {
@@ -137,13 +139,15 @@ void Pipeline::detect(const std::stop_token& stop) {
 }
 
 /// With the first frame it shows whether the stored session goes on.
-void Pipeline::begin_session(const SuitFrame& first, const std::stop_token& stop) {
+void Pipeline::begin_session(SuitFrame& first, const std::stop_token& stop) {
   session_open_ = true;
   const auto now = unix_ms();
   const auto since_s = resume_ ? time_since(*resume_, first, now) : std::nullopt;
   if (since_s) {
     time_offset_s_ = resume_->mark.time_s + *since_s - first.time_s;
-    tracker_.resume(resume_->key_pose, kUnseenSpeed * *since_s);
+    const double unseen_s = std::max(0.0, resume_->mark.time_s + *since_s - resume_->seen_s());
+    first.discontinuity |= !within_reach(resume_->T_odom_pelvis(), first[Segment::Pelvis], unseen_s);
+    tracker_.resume(resume_->tracker, kUnseenSpeed * std::max(0.0, unseen_s - kStrideS));
     spdlog::info("journal: the suit's stream goes on after {:.1f} s, and so does the session", *since_s);
   } else if (journal_) {
     send(journal::SessionStart{journal_->new_id(now), now, KINEMAP_VERSION, journal::kVersion}, stop);
@@ -162,10 +166,20 @@ void Pipeline::take_frame(SuitFrame& frame, std::vector<Event>& events, const st
   tracker_steps_.set(steps_);
   tracker_stats_.set(tracker_.stats());
   for (Event& event : events) send(journal::entry_of(std::move(event)), stop);
-  if (journal_ && frame.time_s >= next_mark_s_) {
-    send(journal::StreamMark{frame.time_s, frame.index, unix_ms()}, stop);
+  if (journal_) note_progress(frame, stop);
+}
+
+/// What another daemon will need to go on from here, should this one die.
+void Pipeline::note_progress(const SuitFrame& frame, const std::stop_token& stop) {
+  if (frame.time_s >= next_mark_s_) {
+    const SinceKeyPose since = tracker_.since_key_pose();
+    send(journal::StreamMark{frame.time_s, frame.counter, unix_ms(), frame.time_code_ms, since.T_odom_pelvis,
+                             since.path_m, since.turn_rad},
+         stop);
     next_mark_s_ = frame.time_s + kMarkS;
   }
+  if (auto piece = tracker_.take_unfinished_trace()) send(std::move(*piece), stop);
+  if (auto piece = tracker_.take_unfinished_sitting()) send(std::move(*piece), stop);
 }
 
 void Pipeline::take_silence(std::vector<Event>& events, const std::stop_token& stop) {
@@ -209,7 +223,7 @@ void Pipeline::record(const std::stop_token& stop) {
       note_map();
       journal_stats_.set(journal_->stats());
       writing_since_s_.store(-1.0, std::memory_order_relaxed);
-      push(events_, std::move(*entry), stop);
+      if (!journal::is_piece(**entry)) push(events_, std::move(*entry), stop);
     } else if (stop.stop_requested()) {
       return note_map();  // all is written
     } else {

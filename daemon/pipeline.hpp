@@ -132,8 +132,9 @@ class Pipeline {
   void detect(const std::stop_token& stop);
   void record(const std::stop_token& stop);
   void solve(const std::stop_token& stop);
-  void begin_session(const SuitFrame& first, const std::stop_token& stop);
+  void begin_session(SuitFrame& first, const std::stop_token& stop);
   void take_frame(SuitFrame& frame, std::vector<Event>& events, const std::stop_token& stop);
+  void note_progress(const SuitFrame& frame, const std::stop_token& stop);
   void take_silence(std::vector<Event>& events, const std::stop_token& stop);
   void send(Entry entry, const std::stop_token& stop);
   Queue* first_queue();  ///< the one that detection writes to
@@ -146,6 +147,8 @@ class Pipeline {
   void fold(const journal::SessionStart& start);
   void fold(const journal::StreamMark&) {}
   void fold(const journal::Announced&) {}
+  void fold(const UnfinishedTrace&) {}
+  void fold(const UnfinishedSitting&) {}
   void fold(const journal::StreamSilence&);
   void fold(const WearerInfo& wearer) { mapper_.set_wearer(wearer); }
   template <class E>

@@ -78,6 +78,8 @@ void FrameMaker::take(const Sample& sample, const Assembler::FrameSink& sink) {
   SuitFrame frame = frame_of(sample);
   frame.time_s = stamp.time_s;
   frame.index = static_cast<std::uint64_t>(sample.clock.index);
+  frame.counter = static_cast<std::uint32_t>(sample.clock.index);
+  frame.time_code_ms = sample.clock.time_code_ms;
   take(std::move(frame), sample.datagrams, sink);
 }
 

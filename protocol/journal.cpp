@@ -96,7 +96,34 @@ Result<FirstLine> check_first_line(std::string_view bytes, const std::string& pa
                "\" in its first line"};
 }
 
+/// Pieces are of no use any more once the whole comes, and many. `from`: none is before it.
+void leave_out_finished(std::vector<Entry>& entries, const Entry& whole, std::size_t& from) {
+  const bool traced = std::holds_alternative<Trace>(whole) || std::holds_alternative<Pivot>(whole);
+  const bool sat = std::holds_alternative<Sitting>(whole);
+  if (!traced && !sat) return;
+  const auto finished = [&](const Entry& e) {
+    return (traced && std::holds_alternative<UnfinishedTrace>(e)) ||
+           (sat && std::holds_alternative<UnfinishedSitting>(e));
+  };
+  const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(from);
+  entries.erase(std::remove_if(begin, entries.end(), finished), entries.end());
+  while (from < entries.size() && !is_piece(entries[from])) ++from;
+}
+
+using Renamed = std::unordered_map<KeyPoseId, KeyPoseId>;
+
+/// Leaves out what hangs on key poses that are lost.
+template <class T>
+void rename(std::vector<T>& list, const Renamed& renamed) {
+  std::erase_if(list, [&](const T& item) { return !renamed.contains(item.key_pose); });
+  for (T& item : list) item.key_pose = renamed.at(item.key_pose);
+}
+
 }  // namespace
+
+bool is_piece(const Entry& entry) {
+  return std::holds_alternative<UnfinishedTrace>(entry) || std::holds_alternative<UnfinishedSitting>(entry);
+}
 
 Entry entry_of(const Event& event) {
   return std::visit([](const auto& e) -> Entry { return e; }, event);
@@ -137,10 +164,12 @@ Result<Contents> read(std::string_view bytes, const std::string& path) {
   Contents contents;
   contents.version = line->version;
   contents.sound_bytes = line->length;
+  std::size_t gesture = 0;
   for (std::size_t at = line->length; at < bytes.size();) {
     const auto payload = payload_at(bytes, at);
     auto entry = payload ? decode(*payload) : std::nullopt;
     if (entry) {
+      leave_out_finished(contents.entries, *entry, gesture);
       contents.entries.push_back(std::move(*entry));
       at += kHead + payload->size();
       contents.sound_bytes = at;
@@ -158,7 +187,7 @@ Result<Contents> read(std::string_view bytes, const std::string& path) {
 
 Mended mend(std::vector<Entry>& entries) {
   Mended report;
-  std::unordered_map<KeyPoseId, KeyPoseId> renamed;
+  Renamed renamed;
   KeyPoseId expected = 0;
   std::vector<Entry> kept;
   kept.reserve(entries.size());
@@ -172,8 +201,7 @@ Mended mend(std::vector<Entry>& entries) {
       renamed.emplace(key_pose->id, id);
       key_pose->id = id;
     } else if (auto* trace = std::get_if<Trace>(&entry)) {
-      std::erase_if(trace->contacts, [&](const HandContact& contact) { return !renamed.contains(contact.key_pose); });
-      for (auto& contact : trace->contacts) contact.key_pose = renamed.at(contact.key_pose);
+      rename(trace->contacts, renamed);
       if (trace->contacts.empty()) {
         ++report.entries_left_out;
         continue;
@@ -185,6 +213,10 @@ Mended mend(std::vector<Entry>& entries) {
         continue;
       }
       sitting->key_pose = known->second;
+    } else if (auto* drawing = std::get_if<UnfinishedTrace>(&entry)) {
+      rename(drawing->contacts, renamed);
+    } else if (auto* bout = std::get_if<UnfinishedSitting>(&entry)) {
+      rename(bout->samples, renamed);
     }
     kept.push_back(std::move(entry));
   }

@@ -10,6 +10,7 @@
 
 #include "core/body.hpp"
 #include "core/events.hpp"
+#include "core/tracker/unfinished.hpp"
 #include "protocol/wire/result.hpp"
 
 /// A session on disk: everything that the mapper was told, in its order. The mapper is a fold over events, so the same
@@ -28,11 +29,15 @@ struct SessionStart {
 };
 
 /// Where the suit's stream was, about once a second: tells, after a crash, whether the stream that comes is still the
-/// same.
+/// same, and where the wearer was.
 struct StreamMark {
   double time_s = 0.0;       ///< stream time of the session
   std::uint64_t index = 0;   ///< sample counter
   std::int64_t unix_ms = 0;  ///< wall clock
+  // Since format 3.
+  std::optional<std::uint32_t> time_code_ms;  ///< the suit's clock
+  std::optional<Pose> T_odom_pelvis;
+  std::optional<double> path_m, turn_rad;  ///< since the latest key pose, as in KeyPose
 };
 
 /// The suit fell silent and the map was optimised to the end.
@@ -46,16 +51,21 @@ struct Announced {
   std::uint64_t rooms = 0;
 };
 
-using Entry =
-    std::variant<SessionStart, StreamMark, StreamSilence, WearerInfo, KeyPose, Trace, Pivot, Sitting, Announced>;
+/// The pieces of an unfinished gesture are for a daemon that has to go on with it; the mapper is told the whole. Since
+/// format 3.
+using Entry = std::variant<SessionStart, StreamMark, StreamSilence, WearerInfo, KeyPose, Trace, Pivot, Sitting,
+                           Announced, UnfinishedTrace, UnfinishedSitting>;
 
 Entry entry_of(const Event& event);
 /// nullptr when the entry is no event.
 std::optional<Event> event_of(const Entry& entry);
 
-inline constexpr std::uint32_t kVersion = 2;  ///< of the format
+/// Whether it is a piece of a gesture that is not finished: of no use to a mapper.
+bool is_piece(const Entry& entry);
 
-/// The first bytes of a journal, "kinemap-journal 2\n".
+inline constexpr std::uint32_t kVersion = 3;  ///< of the format
+
+/// The first bytes of a journal, "kinemap-journal 3\n".
 std::string header();
 /// One entry as its record: marker, length, CRC-32, CBOR.
 std::string record(const Entry& entry);
@@ -76,8 +86,8 @@ struct Contents {
   std::uint64_t torn_bytes = 0;   ///< after that: a record whose writing was cut short
 };
 
-/// Reads what can be read. An Error only when there is nothing to read: no journal, or one of a newer version.
-/// `path` is for the message.
+/// Reads what can be read, but for the pieces of gestures that are there as a whole. An Error only when there is
+/// nothing to read: no journal, or one of a newer version. `path` is for the message.
 Result<Contents> read(std::string_view bytes, const std::string& path);
 
 /// What `mend` had to leave out.

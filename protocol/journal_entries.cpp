@@ -25,6 +25,10 @@ void fields(V& v, StreamMark& e) {
   v("time", e.time_s);
   v("index", e.index);
   v("unix_ms", e.unix_ms);
+  v("time_code_ms", e.time_code_ms);
+  v("pose", e.T_odom_pelvis);
+  v("path", e.path_m);
+  v("turn", e.turn_rad);
 }
 template <class V>
 void fields(V&, StreamSilence&) {}
@@ -78,6 +82,27 @@ void fields(V& v, Announced& e) {
   v("rooms", e.rooms);
 }
 
+template <class V>
+void fields(V& v, UnfinishedTrace& e) {
+  v("begin", e.begin_s);
+  v("seen", e.seen_s);
+  v("held", e.held);
+  v("hips", e.hips);
+  v("stature", e.stature_m);
+  v("contacts", e.contacts);
+}
+template <class V>
+void fields(V& v, UnfinishedSitting& e) {
+  v("begin", e.begin_s);
+  v("seen", e.seen_s);
+  v("still_time", e.still_s);
+  v("unsupported_time", e.unsupported_s);
+  v("still", e.still);
+  v("outside", e.outside);
+  v("velocity", e.velocity);
+  v("samples", e.samples);
+}
+
 constexpr const char* name(const SessionStart&) { return "session"; }
 constexpr const char* name(const StreamMark&) { return "mark"; }
 constexpr const char* name(const StreamSilence&) { return "silence"; }
@@ -87,6 +112,8 @@ constexpr const char* name(const Trace&) { return "trace"; }
 constexpr const char* name(const Pivot&) { return "pivot"; }
 constexpr const char* name(const Sitting&) { return "sitting"; }
 constexpr const char* name(const Announced&) { return "map"; }
+constexpr const char* name(const UnfinishedTrace&) { return "unfinished_trace"; }
+constexpr const char* name(const UnfinishedSitting&) { return "unfinished_sitting"; }
 
 class Writer {
  public:
@@ -113,9 +140,14 @@ class Writer {
     for (Eigen::Index i = 0; i < 9; ++i) list.push_back(m(i / 3, i % 3));
     return list;
   }
-  static Json of(const std::vector<HandContact>& contacts) {
+  static Json of(const HandContact& c) { return {c.time_s, c.key_pose, of(c.T_key_hand)}; }
+  static Json of(const SeatSample& s) { return {s.time_s, s.key_pose, of(s.T_key_seat), s.height_m}; }
+  static Json of(const HipState& hip) { return {hip.near, hip.held, hip.rests_since_s}; }
+  static Json of(const std::array<HipState, 2>& hips) { return {of(hips[0]), of(hips[1])}; }
+  template <class T>
+  static Json of(const std::vector<T>& values) {
     Json list = Json::array();
-    for (const auto& c : contacts) list.push_back({c.time_s, c.key_pose, of(c.T_key_hand)});
+    for (const auto& value : values) list.push_back(of(value));
     return list;
   }
 
@@ -170,8 +202,8 @@ class Reader {
     value = static_cast<std::uint32_t>(wide);
     return true;
   }
-  template <std::size_t N>
-  static bool get(const Json& json, std::array<double, N>& values) {
+  template <class T, std::size_t N>
+  static bool get(const Json& json, std::array<T, N>& values) {
     if (!json.is_array() || json.size() != N) return false;
     for (std::size_t i = 0; i < N; ++i)
       if (!get(json[i], values[i])) return false;
@@ -195,16 +227,24 @@ class Reader {
     T = {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
     return std::abs(T.q.norm() - 1.0) < 1e-6;
   }
-  static bool get(const Json& json, std::vector<HandContact>& contacts) {
+  static bool get(const Json& json, HandContact& c) {
+    return json.is_array() && json.size() == 3 && get(json[0], c.time_s) && get(json[1], c.key_pose) &&
+           get(json[2], c.T_key_hand);
+  }
+  static bool get(const Json& json, SeatSample& s) {
+    return json.is_array() && json.size() == 4 && get(json[0], s.time_s) && get(json[1], s.key_pose) &&
+           get(json[2], s.T_key_seat) && get(json[3], s.height_m);
+  }
+  static bool get(const Json& json, HipState& hip) {
+    return json.is_array() && json.size() == 3 && get(json[0], hip.near) && get(json[1], hip.held) &&
+           get(json[2], hip.rests_since_s);
+  }
+  template <class T>
+  static bool get(const Json& json, std::vector<T>& values) {
     if (!json.is_array()) return false;
-    contacts.resize(json.size());
-    for (std::size_t i = 0; i < json.size(); ++i) {
-      const Json& c = json[i];
-      HandContact& contact = contacts[i];
-      if (!c.is_array() || c.size() != 3 || !get(c[0], contact.time_s) || !get(c[1], contact.key_pose) ||
-          !get(c[2], contact.T_key_hand))
-        return false;
-    }
+    values.resize(json.size());
+    for (std::size_t i = 0; i < json.size(); ++i)
+      if (!get(json[i], values[i])) return false;
     return true;
   }
 

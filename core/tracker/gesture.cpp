@@ -92,4 +92,9 @@ void GestureFold::reset() {
   right_.reset();
 }
 
+void GestureFold::resume(const std::array<HipState, 2>& hips) {
+  left_.resume(hips[0]);
+  right_.resume(hips[1]);
+}
+
 }  // namespace kinemap

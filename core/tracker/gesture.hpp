@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "core/body.hpp"
 #include "core/tracker/config.hpp"
 #include "core/tracker/smoothed_velocity.hpp"
+#include "core/tracker/unfinished.hpp"
 
 namespace kinemap {
 
 enum class Side { Left, Right };
-
-/// `held` implies `near`. A hand is near as soon as the arm has the shape of the gesture, and held once it has rested
-/// there.
-struct HipState {
-  bool near = false;
-  bool held = false;
-  double rests_since_s = 0.0;  ///< stream time; of use while held
-};
 
 /// What the gesture says of one frame.
 struct GestureState {
@@ -35,6 +29,8 @@ class HandOnHip {
   HandOnHip(Side side, const TrackerConfig::Gesture& config);
   HipState step(const SuitFrame& frame);
   void reset();
+  void resume(const HipState& state) { state_ = state; }
+  [[nodiscard]] const HipState& state() const { return state_; }
 
  private:
   [[nodiscard]] bool is_near(const SuitFrame& frame) const;
@@ -51,6 +47,9 @@ class GestureFold {
   explicit GestureFold(const TrackerConfig::Gesture& config);
   GestureState step(const SuitFrame& frame);
   void reset();
+  void resume(const std::array<HipState, 2>& hips);
+  /// Left, right.
+  [[nodiscard]] std::array<HipState, 2> hips() const { return {left_.state(), right_.state()}; }
 
  private:
   HandOnHip left_;

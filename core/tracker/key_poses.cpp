@@ -14,13 +14,24 @@ double heading_or(const Pose& T_odom_pelvis, double otherwise) {
 
 }  // namespace
 
-void KeyPoseFold::resume(const KeyPose& last, double unseen_path_m) {
+void KeyPoseFold::resume(const Interrupted& before, double unseen_path_m) {
   started_ = true;
-  latest_ = last;
-  next_.id = last.id + 1;
-  restart(last.T_odom_pelvis);
+  latest_ = before.key_poses.back();
+  next_.id = latest_.id + 1;
+  restart(latest_.T_odom_pelvis);
   latest_heading_ = heading_;
-  next_.path_m = unseen_path_m;
+  if (before.since_key_pose) {
+    restart(before.since_key_pose->T_odom_pelvis);
+    next_.path_m = before.since_key_pose->path_m;
+    next_.turn_rad = before.since_key_pose->turn_rad;
+  }
+  next_.path_m += unseen_path_m;
+}
+
+SinceKeyPose KeyPoseFold::since_latest() const {
+  KeyPoseFold whole = *this;
+  whole.advance(next_.T_odom_pelvis, 0.0, 0.0);
+  return {next_.T_odom_pelvis, whole.next_.path_m, whole.next_.turn_rad};
 }
 
 std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,

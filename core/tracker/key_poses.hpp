@@ -6,6 +6,7 @@
 #include "core/body.hpp"
 #include "core/events.hpp"
 #include "core/tracker/config.hpp"
+#include "core/tracker/unfinished.hpp"
 
 namespace kinemap {
 
@@ -20,8 +21,8 @@ class KeyPoseFold {
 
   explicit KeyPoseFold(const TrackerConfig::KeyPoses& config) : config_(config) {}
 
-  /// Before the first frame: goes on from a key pose of another fold (Tracker::resume).
-  void resume(const KeyPose& last, double unseen_path_m);
+  /// Before the first frame: goes on from the last key pose of another fold (Tracker::resume).
+  void resume(const Interrupted& before, double unseen_path_m);
 
   /// `p_pelvis_stance` as in KeyPose, `field_disturbed` at this frame. The first frame and a discontinuity always give
   /// a key pose.
@@ -31,6 +32,7 @@ class KeyPoseFold {
   /// The newest frame as a key pose, unless it is one already.
   std::optional<KeyPose> finish();
 
+  [[nodiscard]] SinceKeyPose since_latest() const;
   [[nodiscard]] const KeyPose& latest() const { return latest_; }
   [[nodiscard]] double total_path_m() const { return total_path_m_; }
 

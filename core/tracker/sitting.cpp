@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/tracker/seat_posture.hpp"
 
@@ -39,7 +40,7 @@ std::optional<Sitting> SittingFold::end_if_over(double time_s, const Eigen::Vect
   // A wearer on castors sits on the same chair in another place.
   const bool elsewhere =
       still_ && !samples_.empty() &&
-      (p_pelvis - samples_.front().T_odom_seat.p).head<2>().norm() > config_.moved_m + config_.seat_behind_hip_m;
+      (p_pelvis - samples_.front().T_odom_seat().p).head<2>().norm() > config_.moved_m + config_.seat_behind_hip_m;
   return gone || elsewhere ? close() : std::nullopt;
 }
 
@@ -51,6 +52,7 @@ void SittingFold::open(double time_s) {
   unsupported_s_ = 0.0;
   outside_ = false;
   spacing_s_ = config_.sample_s;
+  told_s_ = -std::numeric_limits<double>::infinity();
   samples_.clear();
 }
 
@@ -67,17 +69,48 @@ void SittingFold::judge(const SuitFrame& frame, const std::array<Sole, 2>& soles
 void SittingFold::record(const SuitFrame& frame, const KeyPose& latest) {
   if (!open_ || !still_) return;
   if (!samples_.empty() && frame.time_s - samples_.back().time_s < spacing_s_) return;
+  const Pose& pelvis = frame[Segment::Pelvis];
+  const Pose T_odom_hips = level_pose(pelvis.p, heading_of(pelvis.q));
+  const Pose T_hips_seat{{-config_.seat_behind_hip_m, 0, -config_.hip_to_seat_m}, Eigen::Quaterniond::Identity()};
+  const Pose T_key_seat = latest.T_odom_pelvis.inverse() * T_odom_hips * T_hips_seat;
+  keep({{frame.time_s, latest.id, T_key_seat, hips_m_ - config_.hip_to_seat_m}, latest.T_odom_pelvis});
+}
+
+void SittingFold::keep(const Sample& sample) {
   if (samples_.size() >= config_.max_samples) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < samples_.size(); i += 2) samples_[kept++] = samples_[i];
     samples_.resize(kept);
     spacing_s_ *= 2.0;
   }
-  const Pose& pelvis = frame[Segment::Pelvis];
-  const Pose T_odom_hips = level_pose(pelvis.p, heading_of(pelvis.q));
-  const Pose T_hips_seat{{-config_.seat_behind_hip_m, 0, -config_.hip_to_seat_m}, Eigen::Quaterniond::Identity()};
-  samples_.push_back(
-      {frame.time_s, T_odom_hips * T_hips_seat, hips_m_ - config_.hip_to_seat_m, latest.id, latest.T_odom_pelvis});
+  samples_.push_back(sample);
+}
+
+std::optional<UnfinishedSitting> SittingFold::take_unfinished() {
+  const bool first = told_s_ < begin_s_;
+  const bool more = !samples_.empty() && samples_.back().time_s > told_s_;
+  if (!open_ || (!first && !more && still_ == told_still_)) return std::nullopt;
+  UnfinishedSitting piece{begin_s_, seen_s_, still_s_, unsupported_s_, still_, outside_, velocity_.velocity(), {}};
+  for (const Sample& sample : samples_)
+    if (sample.time_s > told_s_) piece.samples.push_back(sample);
+  told_s_ = samples_.empty() ? begin_s_ : samples_.back().time_s;
+  told_still_ = still_;
+  return piece;
+}
+
+void SittingFold::resume(const Interrupted& before) {
+  if (!before.sitting) return;
+  open(before.sitting->begin_s);
+  legs_sit_ = before.sitting->still;  // of legs that sat while the body moved nothing is said
+  seen_s_ = time_s_ = before.sitting->seen_s;
+  still_s_ = before.sitting->still_s;
+  unsupported_s_ = before.sitting->unsupported_s;
+  still_ = before.sitting->still;
+  outside_ = before.sitting->outside;
+  velocity_.resume(before.sitting->velocity);
+  for (const SeatSample& sample : before.sitting->samples)
+    if (const KeyPose* key_pose = before.find(sample.key_pose)) keep({sample, key_pose->T_odom_pelvis});
+  told_s_ = samples_.empty() ? begin_s_ : samples_.back().time_s;
 }
 
 std::optional<Sitting> SittingFold::close() {
@@ -104,19 +137,19 @@ Sitting SittingFold::summary() const {
   // before and after cancels in the median.
   const Sample& middle = samples_[samples_.size() / 2];
   const Pose T_key_odom = middle.T_odom_key.inverse();
-  const double heading = heading_of(middle.T_odom_seat.q);
+  const double heading = heading_of(middle.T_odom_seat().q);
   std::array<std::vector<double>, 3> p_key_seat;
   std::vector<double> heights;
   std::vector<double> turns;
   for (const Sample& sample : samples_) {
-    const Eigen::Vector3d p = T_key_odom * sample.T_odom_seat.p;
+    const Eigen::Vector3d p = T_key_odom * sample.T_odom_seat().p;
     for (int i = 0; i < 3; ++i) p_key_seat[static_cast<std::size_t>(i)].push_back(p[i]);
     heights.push_back(sample.height_m);
-    turns.push_back(wrap_angle(heading_of(sample.T_odom_seat.q) - heading));
+    turns.push_back(wrap_angle(heading_of(sample.T_odom_seat().q) - heading));
   }
   const Eigen::Vector3d p(median(p_key_seat[0]), median(p_key_seat[1]), median(p_key_seat[2]));
   double squares = 0.0;
-  for (const Sample& sample : samples_) squares += (T_key_odom * sample.T_odom_seat.p - p).squaredNorm();
+  for (const Sample& sample : samples_) squares += (T_key_odom * sample.T_odom_seat().p - p).squaredNorm();
 
   Sitting sitting;
   sitting.begin_s = begin_s_;

@@ -9,6 +9,7 @@
 #include "core/tracker/config.hpp"
 #include "core/tracker/feet.hpp"
 #include "core/tracker/smoothed_velocity.hpp"
+#include "core/tracker/unfinished.hpp"
 
 namespace kinemap {
 
@@ -28,6 +29,10 @@ class SittingFold {
   std::optional<Sitting> close();
   /// Ends an open bout and forgets the motion (discontinuity).
   std::optional<Sitting> reset();
+  /// What was added to an open bout since the last call, if anything was.
+  std::optional<UnfinishedSitting> take_unfinished();
+  /// Before the first frame: goes on with the bout of another fold, if one was open.
+  void resume(const Interrupted& before);
 
   [[nodiscard]] bool legs_sit() const { return legs_sit_; }
   [[nodiscard]] bool open() const { return open_; }
@@ -35,17 +40,15 @@ class SittingFold {
   [[nodiscard]] bool starting() const { return open_ && still_ && samples_.empty(); }
 
  private:
-  struct Sample {
-    double time_s;
-    Pose T_odom_seat;
-    double height_m;
-    KeyPoseId key_pose;
+  struct Sample : SeatSample {
     Pose T_odom_key;
+    [[nodiscard]] Pose T_odom_seat() const { return T_odom_key * T_key_seat; }
   };
 
   std::optional<Sitting> end_if_over(double time_s, const Eigen::Vector3d& p_pelvis);
   void open(double time_s);
   void judge(const SuitFrame& frame, const std::array<Sole, 2>& soles, bool was_still);
+  void keep(const Sample& sample);
   [[nodiscard]] bool is_seat() const;
   [[nodiscard]] Sitting summary() const;
 
@@ -63,6 +66,8 @@ class SittingFold {
   double still_s_ = 0.0;        ///< time sat still
   double unsupported_s_ = 0.0;  ///< of which with the centre of mass outside of the feet
   double spacing_s_ = 0.0;
+  double told_s_ = 0.0;      ///< take_unfinished() has given away what was before
+  bool told_still_ = false;  ///< … and said so
   std::vector<Sample> samples_;
 };
 

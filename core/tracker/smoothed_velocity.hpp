@@ -13,6 +13,9 @@ class SmoothedVelocity {
   explicit SmoothedVelocity(double time_constant_s) : time_constant_s_(time_constant_s) {}
 
   void reset() { *this = SmoothedVelocity(time_constant_s_); }
+  /// Before the first sample: goes on from what another one had come to.
+  void resume(const Eigen::Vector3d& velocity) { velocity_ = velocity; }
+  [[nodiscard]] const Eigen::Vector3d& velocity() const { return velocity_; }
 
   const Eigen::Vector3d& step(double time_s, const Eigen::Vector3d& point) {
     const double dt = time_s - time_s_;

@@ -28,9 +28,7 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
   const Pose& T_odom_hand = frame[Segment::RightHand];
   const Eigen::Vector3d p_hand_point(0, -config_.hand_point_m, 0);
   if (trace_.contacts.empty()) {
-    first_wrist_ = T_odom_hand.p;
     trace_.stature_m = stature_from_bones(frame);
-    farthest_wrist_ = T_odom_hand.p;
   } else {
     if (frame.time_s <= seen_s_) stretch(T_odom_hand.p);
     const double moved =
@@ -41,10 +39,15 @@ void TraceFold::record(const SuitFrame& frame, const KeyPose& latest) {
       return;
     }
   }
-  trace_.contacts.push_back({frame.time_s, latest.id, latest.T_odom_pelvis.inverse() * T_odom_hand});
-  hand_.push_back({frame.time_s, T_odom_hand});
+  keep({frame.time_s, latest.id, latest.T_odom_pelvis.inverse() * T_odom_hand}, T_odom_hand);
+}
+
+void TraceFold::keep(const HandContact& contact, const Pose& T_odom_hand) {
+  if (trace_.contacts.empty()) first_wrist_ = farthest_wrist_ = T_odom_hand.p;
+  trace_.contacts.push_back(contact);
+  hand_.push_back({contact.time_s, T_odom_hand});
   kept_ = T_odom_hand;
-  kept_s_ = frame.time_s;
+  kept_s_ = contact.time_s;
 }
 
 void TraceFold::stretch(const Eigen::Vector3d& wrist) {
@@ -56,6 +59,7 @@ void TraceFold::stretch(const Eigen::Vector3d& wrist) {
 std::optional<Event> TraceFold::close() {
   if (!open_) return std::nullopt;
   open_ = false;
+  told_ = 0;
   Trace trace = std::exchange(trace_, {});
   std::vector<HandSample> hand = std::exchange(hand_, {});
   const double extent_m = std::exchange(extent_m_, 0.0);
@@ -71,6 +75,33 @@ std::optional<Event> TraceFold::close() {
     return std::nullopt;
   }
   return trace;
+}
+
+std::optional<UnfinishedTrace> TraceFold::take_unfinished(const std::array<HipState, 2>& hips) {
+  const auto same = [](const HipState& a, const HipState& b) { return a.near == b.near && a.held == b.held; };
+  const bool changed = !same(hips[0], told_hips_[0]) || !same(hips[1], told_hips_[1]);
+  if (!open_ || (told_ == trace_.contacts.size() && !changed)) return std::nullopt;
+  told_hips_ = hips;
+  const auto untold = trace_.contacts.begin() + static_cast<std::ptrdiff_t>(told_);
+  told_ = trace_.contacts.size();
+  return UnfinishedTrace{trace_.begin_s, seen_s_, held_, hips, trace_.stature_m, {untold, trace_.contacts.end()}};
+}
+
+void TraceFold::resume(const Interrupted& before) {
+  if (!before.trace) return;
+  open_ = true;
+  held_ = before.trace->held;
+  seen_s_ = before.trace->seen_s;
+  trace_.begin_s = before.trace->begin_s;
+  trace_.stature_m = before.trace->stature_m;
+  for (const HandContact& contact : before.trace->contacts) {
+    const KeyPose* key_pose = before.find(contact.key_pose);
+    if (key_pose == nullptr) continue;
+    const Pose T_odom_hand = key_pose->T_odom_pelvis * contact.T_key_hand;
+    keep(contact, T_odom_hand);
+    if (contact.time_s <= seen_s_) stretch(T_odom_hand.p);
+  }
+  told_ = trace_.contacts.size();
 }
 
 }  // namespace kinemap

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "core/tracker/config.hpp"
 #include "core/tracker/gesture.hpp"
 #include "core/tracker/pivot.hpp"
+#include "core/tracker/unfinished.hpp"
 
 namespace kinemap {
 
@@ -28,6 +31,10 @@ class TraceFold {
   void record(const SuitFrame& frame, const KeyPose& latest);
   /// Ends an open trace (end of the stream, discontinuity).
   std::optional<Event> close();
+  /// What was added to an open trace since the last call, if anything was; `hips` is the gesture's.
+  std::optional<UnfinishedTrace> take_unfinished(const std::array<HipState, 2>& hips);
+  /// Before the first frame: goes on with the trace of another fold, if one was open.
+  void resume(const Interrupted& before);
 
   [[nodiscard]] bool open() const { return open_; }
   /// Open, and by now it is sure that the gesture is meant.
@@ -38,6 +45,7 @@ class TraceFold {
   [[nodiscard]] std::uint64_t thinned_out() const { return thinned_out_; }
 
  private:
+  void keep(const HandContact& contact, const Pose& T_odom_hand);
   void stretch(const Eigen::Vector3d& wrist);
 
   TrackerConfig::Traces config_;
@@ -52,6 +60,8 @@ class TraceFold {
   Eigen::Vector3d farthest_wrist_ = Eigen::Vector3d::Zero();  ///< from the first one, odom frame
   Pose kept_;                                                 ///< T_odom_hand of the last kept contact
   double kept_s_ = 0.0;
+  std::size_t told_ = 0;  ///< so many contacts take_unfinished() has given away
+  std::array<HipState, 2> told_hips_;
   std::uint64_t rejected_ = 0;
   std::uint64_t thinned_out_ = 0;
 };

@@ -42,7 +42,16 @@ class Tracker::Impl {
     count();
   }
 
-  void resume(const KeyPose& last, double unseen_path_m) { key_poses_.resume(last, unseen_path_m); }
+  void resume(const Interrupted& before, double unseen_path_m) {
+    key_poses_.resume(before, unseen_path_m);
+    if (before.trace) gesture_.resume(before.trace->hips);
+    traces_.resume(before);
+    sitting_.resume(before);
+  }
+
+  std::optional<UnfinishedTrace> take_unfinished_trace() { return traces_.take_unfinished(gesture_.hips()); }
+  std::optional<UnfinishedSitting> take_unfinished_sitting() { return sitting_.take_unfinished(); }
+  [[nodiscard]] SinceKeyPose since_key_pose() const { return key_poses_.since_latest(); }
 
   void finish(std::vector<Event>& events) {
     put(sitting_.close(), events);
@@ -94,7 +103,10 @@ Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
-void Tracker::resume(const KeyPose& last, double unseen_path_m) { impl_->resume(last, unseen_path_m); }
+void Tracker::resume(const Interrupted& before, double unseen_path_m) { impl_->resume(before, unseen_path_m); }
+std::optional<UnfinishedTrace> Tracker::take_unfinished_trace() { return impl_->take_unfinished_trace(); }
+std::optional<UnfinishedSitting> Tracker::take_unfinished_sitting() { return impl_->take_unfinished_sitting(); }
+SinceKeyPose Tracker::since_key_pose() const { return impl_->since_key_pose(); }
 void Tracker::step(const SuitFrame& frame, std::vector<Event>& events) { impl_->step(frame, events); }
 void Tracker::finish(std::vector<Event>& events) { impl_->finish(events); }
 const TrackerStats& Tracker::stats() const { return impl_->stats(); }

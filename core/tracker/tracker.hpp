@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/body.hpp"
 #include "core/events.hpp"
 #include "core/tracker/config.hpp"
+#include "core/tracker/unfinished.hpp"
 
 namespace kinemap {
 
@@ -33,9 +35,9 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;
 
-  /// Before the first frame: the stream goes on from this key pose, of a tracker that is gone. `unseen_path_m`: how far
-  /// the wearer may have walked since.
-  void resume(const KeyPose& last, double unseen_path_m);
+  /// Before the first frame: the stream goes on where a tracker that is gone has left it, gestures too.
+  /// `unseen_path_m`: how far the wearer may have walked since.
+  void resume(const Interrupted& before, double unseen_path_m);
 
   /// Takes the next frame and appends the events that it completes, in order of time. A Trace or Sitting only refers to
   /// key poses that were emitted before it.
@@ -43,6 +45,12 @@ class Tracker {
 
   /// The stream ended: closes an open trace or sitting and appends a last key pose.
   void finish(std::vector<Event>& events);
+
+  /// The next piece of what is open, for a tracker that will have to go on with it; nullopt when there is nothing new.
+  std::optional<UnfinishedTrace> take_unfinished_trace();
+  std::optional<UnfinishedSitting> take_unfinished_sitting();
+  /// Of the newest frame.
+  [[nodiscard]] SinceKeyPose since_key_pose() const;
 
   [[nodiscard]] const TrackerStats& stats() const;
 

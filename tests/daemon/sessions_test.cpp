@@ -240,37 +240,101 @@ TEST_F(JournalTest, TwoSessionsOfOneSecondHaveTwoNames) {
 }
 
 struct Resume : testing::Test {
-  ResumePoint point{key_pose(40), {10.0, 5000, 1'000'000}, 100.0};
+  ResumePoint point;
   SuitFrame frame;
-  Resume() { frame.index = 5500; }
+  Resume() {
+    point.tracker.key_poses = {key_pose(40)};
+    point.mark = {10.0, 5000, 1'000'000, {}, {}, {}, {}};
+    point.rate_hz = 100.0;
+    frame.counter = 5500;
+  }
 };
 
 TEST_F(Resume, TheCounterTellsHowLongItTook) { EXPECT_EQ(time_since(point, frame, 1'005'000), 5.0); }
 TEST_F(Resume, AWallClockThatIsBehindIsNotBelieved) { EXPECT_EQ(time_since(point, frame, 1'000), 5.0); }
 TEST_F(Resume, TheCounterMayTurnOver) {
   point.mark.index = 4294967200U;
-  frame.index = 4;
+  frame.counter = 4;
   EXPECT_EQ(time_since(point, frame, 1'001'000), 1.0);
 }
 TEST_F(Resume, ACounterThatBeganAnewIsAnotherStream) {
-  frame.index = 10;
+  frame.counter = 10;
   EXPECT_EQ(time_since(point, frame, 1'005'000), std::nullopt);
 }
 TEST_F(Resume, ACounterThatCountedLessThanTheClockIsAnotherStream) {
+  frame.counter = 5000 + 6000;
   EXPECT_EQ(time_since(point, frame, 1'000'000 + 3'600'000), std::nullopt);
+}
+TEST_F(Resume, ACounterThatGoesOnRightThereIsTheSameStreamHoweverLongItHeld) {
+  frame.counter = 5000 + 50;
+  EXPECT_EQ(time_since(point, frame, 1'000'000 + 3'600'000), 3600.0) << "without a time code, the wall's clock counts";
+  point.mark.time_code_ms = 40'000'000;
+  frame.time_code_ms = 40'000'500;
+  EXPECT_EQ(time_since(point, frame, 1'000'000 + 3'600'000), 0.5) << "a recording that was held";
+  frame.time_code_ms = 43'600'000;
+  EXPECT_EQ(time_since(point, frame, 1'000'000 + 3'600'000), 3600.0) << "a suit that was held";
+}
+TEST_F(Resume, ARestartedSuitCountsFromZeroWhateverTheClocksSay) {
+  point.mark.time_code_ms = 40'000'000;
+  frame.time_code_ms = 40'005'000;
+  frame.counter = 0;
+  EXPECT_EQ(time_since(point, frame, 1'005'000), std::nullopt);
 }
 TEST_F(Resume, NobodyWalksThatFar) {
   frame[Segment::Pelvis].p.x() = 30.0;
   EXPECT_EQ(time_since(point, frame, 1'005'000), std::nullopt);
 }
 TEST(ResumePointOf, NeedsTwoMarksAndAKeyPose) {
-  const journal::StreamMark first{1.0, 100, 0}, second{2.0, 220, 1000};
+  const journal::StreamMark first{1.0, 100, 0, {}, {}, {}, {}}, second{2.0, 220, 1000, {}, Pose{}, 0.1, 0.2};
   EXPECT_FALSE(resume_point({}));
   EXPECT_FALSE(resume_point({key_pose(0), first}));
   const auto point = resume_point({key_pose(0), first, key_pose(1), second});
   ASSERT_TRUE(point);
-  EXPECT_EQ(point->key_pose.id, 1U);
+  EXPECT_EQ(point->tracker.key_poses.back().id, 1U);
   EXPECT_EQ(point->rate_hz, 120.0);
+  EXPECT_EQ(point->tracker.since_key_pose->path_m, 0.1);
+  EXPECT_EQ(point->seen_s(), 2.0);
+}
+
+/// Entries and two marks, with which they make a resume point.
+Interrupted interrupted(std::vector<journal::Entry> entries) {
+  entries.push_back(journal::StreamMark{0.1, 100, 0, {}, {}, {}, {}});
+  entries.push_back(journal::StreamMark{0.2, 112, 0, {}, {}, {}, {}});
+  return resume_point(entries)->tracker;
+}
+TEST(ResumePointOf, PutsTogetherTheUnfinishedGestureAndWhatItRefersTo) {
+  const auto piece = [](double begin_s, double seen_s, KeyPoseId key_pose) {
+    return UnfinishedTrace{begin_s, seen_s, true, {}, {}, {{seen_s, key_pose, Pose{}}}};
+  };
+  std::vector<journal::Entry> entries;
+  for (KeyPoseId id = 0; id < 1000; ++id) {
+    entries.push_back(key_pose(id));
+    if (id == 100) entries.push_back(piece(10.0, 10.0, id));  // came to nothing
+    if (id >= 900) entries.push_back(piece(90.0, 0.1 * id, id));
+  }
+  const auto tracker = interrupted(entries);
+  ASSERT_TRUE(tracker.trace);
+  EXPECT_EQ(tracker.trace->begin_s, 90.0);
+  EXPECT_EQ(tracker.trace->seen_s, 0.1 * 999);
+  ASSERT_THAT(tracker.trace->contacts, SizeIs(100));
+  EXPECT_EQ(tracker.find(900)->id, 900U);
+  EXPECT_EQ(tracker.find(999)->id, 999U);
+  EXPECT_EQ(tracker.find(1000), nullptr);
+  EXPECT_LT(tracker.key_poses.size(), 400U) << "what nothing refers to is forgotten";
+}
+TEST(ResumePointOf, AGestureThatHasEndedIsNotUnfinished) {
+  const UnfinishedTrace drawing{0.0, 0.1, true, {}, {}, {{0.1, 0, Pose{}}}};
+  const UnfinishedSitting sitting{0.0, 0.1, 0.1, 0.1, true, true, {0.5, 0, 0}, {{0.1, 0, Pose{}, 0.4}}};
+  EXPECT_TRUE(interrupted({key_pose(0), drawing, sitting}).trace);
+  EXPECT_TRUE(interrupted({key_pose(0), drawing, sitting}).sitting);
+  EXPECT_FALSE(interrupted({key_pose(0), drawing, Trace{}}).trace);
+  EXPECT_FALSE(interrupted({key_pose(0), drawing, Pivot{}}).trace);
+  EXPECT_FALSE(interrupted({key_pose(0), sitting, Sitting{}}).sitting);
+  EXPECT_FALSE(interrupted({key_pose(0), sitting, journal::StreamSilence{}}).sitting);
+  KeyPose broken = key_pose(1);
+  broken.discontinuity = true;
+  EXPECT_FALSE(interrupted({key_pose(0), drawing, broken}).trace);
+  EXPECT_FALSE(interrupted({key_pose(0), drawing, key_pose(200)}).trace) << "its end was not worth an entry";
 }
 
 std::vector<SuitFrame> glider_frames(std::uint32_t begin, std::uint32_t end) {

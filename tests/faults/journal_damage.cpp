@@ -63,7 +63,7 @@ std::vector<journal::Entry> simulated_entries(std::uint64_t seed) {
     tracker.step(frame, events);
     for (const auto& event : events) entries.push_back(journal::entry_of(event));
     if (frame.time_s < next_mark_s) return;
-    entries.push_back(journal::StreamMark{frame.time_s, frame.index, 1767225600000});
+    entries.push_back(journal::StreamMark{frame.time_s, frame.counter, 1767225600000, frame.time_code_ms, {}, {}, {}});
     next_mark_s = frame.time_s + 1.0;
   };
   while (const auto packets = source->next())

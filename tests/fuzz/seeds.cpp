@@ -80,14 +80,16 @@ void write_journal(const fs::path& folder) {
   next.time_s = 1.0;
   next.field_disturbed = true;
   const std::vector<journal::Entry> entries{
-      journal::SessionStart{"20261122T103303Z", 1795343583000, "0.1.0", 2U},
+      journal::SessionStart{"20261122T103303Z", 1795343583000, "0.1.0", journal::kVersion},
       WearerInfo{"Ada", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.7},
       pose,
       Trace{0.0, 2.0, 1.7, {{0.5, 0, pose.T_odom_pelvis}, {0.6, 0, pose.T_odom_pelvis}}},
       next,
+      UnfinishedTrace{0.0, 0.7, true, {}, 1.7, {{0.5, 0, pose.T_odom_pelvis}}},
+      UnfinishedSitting{1.5, 2.0, 0.4, 0.4, true, true, {0.5, 0, 0}, {{1.6, 1, pose.T_odom_pelvis, 0.45}}},
       Pivot{1.0, 1.5, {0, -0.1, 0}, Eigen::Matrix3d::Identity()},
       Sitting{1.5, 4.0, 1, pose.T_odom_pelvis, 0.45, 0.01},
-      journal::StreamMark{4.0, 480, 1795343587000},
+      journal::StreamMark{4.0, 480, 1795343587000, 36000000U, pose.T_odom_pelvis, 0.1, 0.2},
       journal::StreamSilence{}};
   std::string whole = journal::header();
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -47,13 +47,18 @@ std::vector<Entry> session() {
                              WearerInfo{"Ada \xC3\x9F", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.71}};
   for (KeyPoseId id = 0; id < 12; ++id) {
     entries.push_back(key_pose(id));
-    if (id % 5 == 0) entries.push_back(StreamMark{0.1 * id, 4294967290U + id, 1795343583000 + id});
+    if (id % 5 == 0) entries.push_back(StreamMark{0.1 * id, 4294967290U + id, 1795343583000 + id, {}, {}, {}, {}});
   }
   entries.push_back(trace(2, 30));
+  entries.push_back(StreamMark{32.0, 7, 1795343584000, 86399999U, some_pose(1), 0.125, 0.0625});
   entries.push_back(Pivot{20, 26, {0.01, -0.17, 0}, Eigen::Vector3d(1e-4, 2e-4, 1.0 / 3.0).asDiagonal()});
   entries.push_back(Sitting{30, 34, 11, some_pose(3), 0.44, 0.01});
   entries.push_back(Announced{33.5, 12, 3, 1});
   entries.push_back(StreamSilence{});
+  entries.push_back(
+      UnfinishedTrace{1.5, 2.25, true, {HipState{true, true, 1.75}, HipState{}}, 1.78, trace(2, 5).contacts});
+  entries.push_back(
+      UnfinishedSitting{30, 31.5, 1.25, 0.75, true, false, {0.5, 0, 0}, {{30.5, 11, some_pose(3), 0.44}}});
   return entries;
 }
 
@@ -122,10 +127,12 @@ TEST(Journal, AFlippedBitInTheFirstLineCostsNothingElse) {
 }
 
 TEST(Journal, OfANewerVersionOrOfSomethingElseIsRefused) {
-  EXPECT_THAT(read("kinemap-journal 3\n", "a/journal").error(), HasSubstr("a/journal: a journal of format 3"));
-  const auto newer = "kinemap-journal 3\n" + record(SessionStart{"x", 0, "9.0", 3}) + record(key_pose(0));
-  EXPECT_THAT(read(newer, "a/journal").error(), HasSubstr("this one reads up to format 2"));
-  EXPECT_THAT(read("?" + newer, "a/journal").error(), HasSubstr("format 3"));
+  const auto next = std::to_string(kVersion + 1);
+  const auto line = "kinemap-journal " + next + "\n";
+  EXPECT_THAT(read(line, "a/journal").error(), HasSubstr("a/journal: a journal of format " + next));
+  const auto newer = line + record(SessionStart{"x", 0, "9.0", kVersion + 1}) + record(key_pose(0));
+  EXPECT_THAT(read(newer, "a/journal").error(), HasSubstr("this one reads up to format " + std::to_string(kVersion)));
+  EXPECT_THAT(read("?" + newer, "a/journal").error(), HasSubstr("format " + next));
   for (const char* text : {"", "kinemap-journal", "kinemap-journal \n", "kinemap-journal -1\n", "PK\x03\x04", "{}"})
     EXPECT_THAT(read(text, "x").error(), HasSubstr("no journal of Kinemap")) << text;
 }
@@ -166,6 +173,17 @@ TEST(Journal, FilesOfEveryFormatOpen) {
   }
 }
 
+TEST(Journal, PiecesOfWhatIsFinishedAreNotRead) {
+  const UnfinishedTrace drawing{1.5, 2.25, true, {}, {}, trace(0, 4).contacts};
+  const UnfinishedSitting sitting{1.5, 2.25, 0.5, 0.5, true, true, {0, 0, 0}, {{2.0, 0, some_pose(0), 0.4}}};
+  const Sitting seat{1.5, 4.0, 0, some_pose(0), 0.4, 0.01};
+  const auto count = [](const std::vector<Entry>& entries) { return read(file_of(entries), "j")->entries.size(); };
+  EXPECT_EQ(count({key_pose(0), drawing, sitting, drawing}), 4U);
+  EXPECT_EQ(count({key_pose(0), drawing, sitting, key_pose(1), drawing, trace(0, 8)}), 4U);
+  EXPECT_EQ(count({key_pose(0), drawing, sitting, trace(0, 8), drawing, seat}), 4U);
+  EXPECT_EQ(count({key_pose(0), drawing, Pivot{1.5, 4.0, {0, 0, 0}, Eigen::Matrix3d::Identity()}, sitting, seat}), 3U);
+}
+
 TEST(JournalMend, ChangesNothingWhereNothingIsMissing) {
   auto entries = session();
   const auto report = mend(entries);
@@ -192,6 +210,19 @@ TEST(JournalMend, BreaksTheOdometryWhereKeyPosesAreMissing) {
   EXPECT_EQ(contacts.front().key_pose, 1U);
   EXPECT_EQ(contacts.back().key_pose, 2U);
   EXPECT_EQ(std::get<Sitting>(entries[5]).key_pose, 3U);
+}
+
+TEST(JournalMend, WhatIsUnfinishedKeepsWhatItCan) {
+  std::vector<Entry> entries{key_pose(0), key_pose(3), UnfinishedTrace{0, 1, true, {}, {}, trace(2, 8).contacts}};
+  entries.push_back(UnfinishedSitting{
+      0, 1, 1, 1, true, true, {0.5, 0, 0}, {{0.5, 1, some_pose(0), 0.4}, {0.6, 3, some_pose(0), 0.4}}});
+  mend(entries);
+  const auto& contacts = std::get<UnfinishedTrace>(entries[2]).contacts;  // of key poses 2 and 3
+  ASSERT_THAT(contacts, SizeIs(4));
+  EXPECT_EQ(contacts.front().key_pose, 1U);
+  const auto& samples = std::get<UnfinishedSitting>(entries[3]).samples;
+  ASSERT_THAT(samples, SizeIs(1));
+  EXPECT_EQ(samples.front().key_pose, 1U);
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ struct Adder {
     if (!sum.begin_unix_ms) sum.begin_unix_ms = mark.unix_ms - std::llround(1000.0 * mark.time_s);
   }
   void operator()(const journal::StreamSilence&) const {}
+  void operator()(const UnfinishedTrace&) const {}
+  void operator()(const UnfinishedSitting&) const {}
   void operator()(const WearerInfo& wearer) const {
     const auto& names = sum.wearers;
     if (!wearer.name.empty() && std::find(names.begin(), names.end(), wearer.name) == names.end())

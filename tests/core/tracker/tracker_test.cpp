@@ -110,6 +110,78 @@ TEST(Tracker, MovesWithTheWorld) {
   }
 }
 
+/// A tracker dies after each of `deaths` (indices of frames) and another one goes on, told what the first one noted
+/// after each frame. No frame is lost.
+Outcome track_with_deaths(const std::vector<SuitFrame>& frames, const std::vector<std::size_t>& deaths) {
+  Outcome out;
+  Tracker tracker{TrackerConfig{}};
+  Interrupted noted;
+  std::vector<Event> events;
+  auto death = deaths.begin();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    events.clear();
+    tracker.step(frames[i], events);
+    for (const Event& event : events) {
+      if (const auto* key_pose = std::get_if<KeyPose>(&event)) {
+        out.key_poses.push_back(*key_pose);
+        continue;
+      }
+      if (const auto* trace = std::get_if<Trace>(&event)) out.traces.push_back(*trace), noted.trace.reset();
+      if (const auto* sitting = std::get_if<Sitting>(&event)) out.sittings.push_back(*sitting), noted.sitting.reset();
+    }
+    auto trace = tracker.take_unfinished_trace();
+    auto sitting = tracker.take_unfinished_sitting();
+    if (trace) append(noted.trace, *trace);
+    if (sitting) append(noted.sitting, *sitting);
+    if (death == deaths.end() || i != *death) continue;
+    ++death;
+    noted.key_poses = out.key_poses;
+    noted.since_key_pose = tracker.since_key_pose();
+    tracker = Tracker(TrackerConfig{});
+    tracker.resume(noted, 0.0);
+  }
+  events.clear();
+  tracker.finish(events);
+  for (const Event& event : events)
+    if (const auto* key_pose = std::get_if<KeyPose>(&event)) out.key_poses.push_back(*key_pose);
+  return out;
+}
+
+// What a tracker that died had seen of a gesture is not lost, wherever in it that was.
+TEST(Tracker, AnotherOneGoesOnInTheMiddleOfAGesture) {
+  const Puppet puppet;
+  const auto frames = session(puppet);
+  const Outcome whole = track(frames);
+  ASSERT_EQ(whole.traces.size(), 2u);
+  ASSERT_EQ(whole.sittings.size(), 1u);
+  const auto way = [](const Outcome& outcome) {
+    double sum = 0.0;
+    for (const KeyPose& key_pose : outcome.key_poses) sum += key_pose.path_m;
+    return sum;
+  };
+  const auto place = [](const Outcome& outcome, const Sitting& sitting) {
+    return (outcome.key(sitting.key_pose) * sitting.T_key_seat).p;
+  };
+  for (std::size_t first = 50; first < 500; first += 50) {
+    std::vector<std::size_t> deaths;
+    for (std::size_t at = first; at < frames.size(); at += 500) deaths.push_back(at);
+    const Outcome torn = track_with_deaths(frames, deaths);
+    EXPECT_NEAR(way(torn), way(whole), 0.05) << first;
+    ASSERT_EQ(torn.traces.size(), whole.traces.size()) << first;
+    for (std::size_t i = 0; i < whole.traces.size(); ++i) {
+      EXPECT_EQ(torn.traces[i].begin_s, whole.traces[i].begin_s);
+      EXPECT_NEAR(torn.traces[i].end_s, whole.traces[i].end_s, 1e-9);
+      EXPECT_EQ(torn.traces[i].stature_m, whole.traces[i].stature_m);
+      ASSERT_EQ(torn.traces[i].contacts.size(), whole.traces[i].contacts.size()) << first;
+      for (std::size_t k = 0; k < whole.traces[i].contacts.size(); ++k)
+        EXPECT_EQ(torn.traces[i].contacts[k].time_s, whole.traces[i].contacts[k].time_s);
+    }
+    ASSERT_EQ(torn.sittings.size(), whole.sittings.size()) << first;
+    EXPECT_NEAR((place(torn, torn.sittings[0]) - place(whole, whole.sittings[0])).norm(), 0.0, 0.005) << first;
+    EXPECT_NEAR(torn.sittings[0].height_m, whole.sittings[0].height_m, 0.005);
+  }
+}
+
 TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
   const Puppet puppet;
   const auto acts = between_standing(16.0, [&](double t) {

@@ -45,7 +45,8 @@ Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, con
       entries_to_restore_(stored_.size()),
       tracker_(tracker),
       resume_(resume_point(stored_)),
-      mapper_(mapper) {
+      mapper_(mapper),
+      checkpoints_(journal_.get(), mapper) {
   map_.set(mapper_.snapshot());
   solver_ = std::jthread([this](const std::stop_token& stop) { solve(stop); });
   pthread_setname_np(solver_.native_handle(), "solver");
@@ -267,7 +268,9 @@ void Pipeline::solve(const std::stop_token& stop) {
     const auto optimisations = mapper_.snapshot()->graph.optimisations;
     const double begin_s = now_s();
     solver_at_work_.store(true, std::memory_order_relaxed);
+    checkpoints_.add(**message);
     take_entry(**message);
+    checkpoints_.keep(**message, mapper_);
     solver_at_work_.store(false, std::memory_order_relaxed);
     solver_steps_.fetch_add(1, std::memory_order_relaxed);
     const double seconds = now_s() - begin_s;
@@ -280,17 +283,26 @@ void Pipeline::solve(const std::stop_token& stop) {
   }
 }
 
-/// Maps the stored session again. Nobody is told of what happened in it; the map appears when it is whole.
+/// Maps the stored session again, from its checkpoint on. Nobody is told of what happened in it; the map appears when
+/// it is whole.
 void Pipeline::restore(const std::stop_token& stop) {
   if (stored_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
   solver_at_work_.store(true, std::memory_order_relaxed);
-  for (const auto& entry : stored_) {
+  std::size_t next = 0;
+  if (auto checkpoint = checkpoints_.restore(stored_)) {
+    mapper_ = std::move(checkpoint->mapper);
+    next = checkpoint->entries;
+    spdlog::info("journal: {} of {} entries are back from a checkpoint", next, stored_.size());
+  }
+  for (; next < stored_.size(); ++next) {
+    entries_restored_.store(next, std::memory_order_relaxed);
     if (stop.stop_requested()) return;
-    journal::tell(mapper_, entry);
-    entries_restored_.fetch_add(1, std::memory_order_relaxed);
+    checkpoints_.add(stored_[next]);
+    journal::tell(mapper_, stored_[next]);
     solver_steps_.fetch_add(1, std::memory_order_relaxed);
   }
+  entries_restored_.store(next, std::memory_order_relaxed);
   solver_at_work_.store(false, std::memory_order_relaxed);
   stored_ = {};
   publish();

@@ -16,6 +16,7 @@
 #include "core/map.hpp"
 #include "core/mapper/mapper.hpp"
 #include "core/tracker/tracker.hpp"
+#include "daemon/checkpoints.hpp"
 #include "daemon/durations.hpp"
 #include "daemon/latest.hpp"
 #include "daemon/live_body.hpp"
@@ -193,6 +194,7 @@ class Pipeline {
 
   std::uint64_t sessions_begun_ = 0;  // solver thread only
   Mapper mapper_;                     // solver thread only
+  Checkpoints checkpoints_;           // solver thread only
   std::jthread solver_, recorder_, detection_;
 };
 

@@ -19,8 +19,8 @@ struct SessionInfo {
 };
 
 /// Where sessions lie, for the daemon that writes them and the tools that look at them: `sessions/ID/journal.kjr` each,
-/// with the recordings of the suit beside it; `quarantine/ID.kjr` for journals that were damaged, as they were found;
-/// and `lock`.
+/// with a checkpoint of the mapper and the recordings of the suit beside it; `quarantine/ID.kjr` for journals that were
+/// damaged, as they were found; and `lock`.
 class SessionFiles {
  public:
   explicit SessionFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
@@ -28,6 +28,9 @@ class SessionFiles {
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   [[nodiscard]] std::filesystem::path folder_of(const std::string& id) const { return directory_ / "sessions" / id; }
   [[nodiscard]] std::filesystem::path journal_of(const std::string& id) const { return folder_of(id) / "journal.kjr"; }
+  [[nodiscard]] std::filesystem::path checkpoint_of(const std::string& id) const {
+    return folder_of(id) / "checkpoint";
+  }
   [[nodiscard]] std::filesystem::path quarantine() const { return directory_ / "quarantine"; }
   [[nodiscard]] std::filesystem::path quarantined(const std::string& id) const { return quarantine() / (id + ".kjr"); }
 

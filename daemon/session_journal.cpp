@@ -25,7 +25,7 @@ SessionJournal::SessionJournal(SessionStore store, const Config::Journal& config
     : store_(std::move(store)), config_(config), stored_(store_.last()) {
   if (config.record) {
     Recorder::Limits limits;
-    limits.min_free_bytes = bytes(config.min_free_mb);
+    limits.min_free_bytes = min_free_bytes();
     limits.max_file_bytes = bytes(config.record_file_mb);
     limits.max_file_age = std::chrono::seconds(std::lround(60.0 * config.record_file_min));
     recorder_ = std::make_unique<Recorder>(
@@ -33,6 +33,8 @@ SessionJournal::SessionJournal(SessionStore store, const Config::Journal& config
   }
   if (stored_) begin(stored_->id, stored_->bytes);
 }
+
+std::uint64_t SessionJournal::min_free_bytes() const { return bytes(config_.min_free_mb); }
 
 void SessionJournal::append(const journal::Entry& entry) {
   if (const auto* start = std::get_if<journal::SessionStart>(&entry)) {
@@ -58,7 +60,7 @@ void SessionJournal::begin(const std::string& id, std::uint64_t length) {
   id_ = id;
   store_.begin(id);
   JournalFile::Limits limits;
-  limits.min_free_bytes = bytes(config_.min_free_mb);
+  limits.min_free_bytes = min_free_bytes();
   file_ = std::make_unique<JournalFile>(store_.files().journal_of(id), length, limits);
   make_room(id);
 }

@@ -23,6 +23,11 @@ class SessionJournal {
   std::optional<StoredSession> take_stored() { return std::exchange(stored_, std::nullopt); }
   /// For a session that begins now. Any thread.
   [[nodiscard]] std::string new_id(std::int64_t unix_ms) const { return store_.new_id(unix_ms); }
+  /// Where the mapper's state may be kept beside that session's journal. Any thread.
+  [[nodiscard]] std::filesystem::path checkpoint_of(const std::string& id) const {
+    return store_.files().checkpoint_of(id);
+  }
+  [[nodiscard]] std::uint64_t min_free_bytes() const;
 
   /// Goes on with the stored session, or begins another one with a SessionStart. One thread.
   void append(const journal::Entry& entry);

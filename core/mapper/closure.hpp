@@ -39,6 +39,12 @@ class LoopCloser {
   /// Optimises with at most `iterations`.
   bool optimise(MapState& state, int iterations) const;
 
+  /// Its members, for Mapper::checkpoint().
+  template <class A>
+  void fields(A& a) {
+    a(contradicted_, next_id_);
+  }
+
  private:
   struct Trial {
     MapState state;

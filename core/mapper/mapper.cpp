@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/mapper/checkpoint.hpp"
 #include "core/mapper/closure.hpp"
 #include "core/mapper/observe.hpp"
 #include "core/mapper/odometry.hpp"
@@ -93,6 +94,34 @@ class Mapper::Impl {
     closer_.revise(state_);
     if (closer_.reconsider(state_)) closer_.settle(state_, config_.solver.final_iterations);
     publish();
+  }
+
+  [[nodiscard]] std::string checkpoint() {
+    Archive archive;
+    std::uint32_t version = kCheckpointVersion;
+    std::uint64_t revision = snapshot_->revision;
+    archive(version, revision, *this);
+    return std::move(archive.bytes());
+  }
+  bool restore(std::string_view checkpoint) {
+    Archive archive(checkpoint);
+    std::uint32_t version = 0;
+    std::uint64_t revision = 0;
+    archive(version, revision);
+    if (version != kCheckpointVersion) return false;
+    archive(*this);
+    if (!archive.whole()) return false;
+    auto before = std::make_shared<MapSnapshot>();
+    before->revision = revision - 1;
+    snapshot_ = std::move(before);
+    const PoseCovariance covariance = pelvis_covariance_;  // as carried on, which publishing takes from the graph anew
+    publish();
+    pelvis_covariance_ = covariance;
+    return true;
+  }
+  void fields(Archive& a) {
+    a(wearer_, odometry_, resolver_, closer_, touch_, pelvis_covariance_, touched_, state_, settled_way_, unresolved_,
+      time_s_);
   }
 
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
@@ -251,6 +280,12 @@ bool Mapper::add(const Event& event) {
   return std::visit([this](const auto& e) { return impl_->add(e); }, event);
 }
 void Mapper::finish() { impl_->finish(); }
+std::string Mapper::checkpoint() const { return impl_->checkpoint(); }
+std::optional<Mapper> Mapper::restore(const MapperConfig& config, std::string_view checkpoint) {
+  Mapper mapper(config);
+  if (!mapper.impl_->restore(checkpoint)) return std::nullopt;
+  return mapper;
+}
 std::shared_ptr<const MapSnapshot> Mapper::snapshot() const { return impl_->snapshot(); }
 const graph::Graph& Mapper::graph() const { return impl_->graph(); }
 

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/body.hpp"
 #include "core/events.hpp"
@@ -32,6 +35,12 @@ class Mapper {
 
   /// No more events: optimises to convergence and publishes a last snapshot.
   void finish();
+
+  /// All that it knows, as bytes that only the same program with the same configuration can go on from. Best taken when
+  /// a trace or sitting has just been published: then what goes on from it gives the same map, byte for byte.
+  [[nodiscard]] std::string checkpoint() const;
+  /// What a checkpoint was taken of, published; nullopt where it is none of this program.
+  static std::optional<Mapper> restore(const MapperConfig& config, std::string_view checkpoint);
 
   /// The newest snapshot; never null (the first revision is the empty map).
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const;

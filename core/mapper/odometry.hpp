@@ -31,6 +31,11 @@ class Odometry {
 
   /// Those not let go, the newest last; to the k-th leads graph.between[k − 1].
   [[nodiscard]] const std::vector<KeyPose>& key_poses() const { return key_poses_; }
+  /// Its members, for Mapper::checkpoint().
+  template <class A>
+  void fields(A& a) {
+    a(key_poses_, suspect_until_s_, level_z_, last_stance_z_, levels_, off_level_, steady_, on_level_);
+  }
   /// Height of the level that the wearer stands on, map frame, m.
   [[nodiscard]] double floor_z() const { return level_z_; }
 

@@ -23,6 +23,12 @@ class PoseCovariance {
   /// where the way began.
   [[nodiscard]] graph::Matrix6 published(const Pose& T_map_pelvis, const Eigen::Vector3d& p_first) const;
 
+  /// Its members, for Mapper::checkpoint().
+  template <class A>
+  void fields(A& a) {
+    a(covariance_);
+  }
+
  private:
   MapperConfig::Odometry config_;
   graph::Matrix6 covariance_ = graph::Matrix6::Zero();  // position and rotation vector, both in the map's axes

@@ -32,6 +32,12 @@ class TraceResolver {
   /// Poses of the graph have been left out: those from `first` on have numbers that are less by `fewer`.
   void renumber(std::size_t first, std::size_t fewer);
 
+  /// Its members, for Mapper::checkpoint().
+  template <class A>
+  void fields(A& a) {
+    a(open_);
+  }
+
  private:
   /// Both traces as one, if one rectangle was drawn in them; with or without the hand's way from the surface and back
   /// to it where they meet.

@@ -46,6 +46,14 @@ class TouchBelief {
 
   [[nodiscard]] double palm_probability() const;
 
+  /// Its members, for Mapper::checkpoint().
+  template <class A>
+  void fields(A& a) {
+    for (Gaussian& part : expected_) a(part.mean, part.covariance, part.log_weight);
+    for (Evidence* evidence : {&pivots_, &contacts_}) a(evidence->information, evidence->vector);
+    for (Mean& mean : fingers_into_) a(mean.sum, mean.count);
+  }
+
  private:
   struct Gaussian {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();

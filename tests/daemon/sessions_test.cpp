@@ -8,10 +8,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "daemon/checkpoints.hpp"
 #include "daemon/pipeline.hpp"
 #include "daemon/resume.hpp"
 #include "daemon/session_store.hpp"
 #include "protocol/assembler.hpp"
+#include "protocol/journal_map.hpp"
+#include "tests/core/mapper/wearer.hpp"
 #include "tests/daemon/support.hpp"
 
 namespace kinemap {
@@ -344,6 +347,109 @@ std::vector<SuitFrame> glider_frames(std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t i = begin; i < end; ++i) assembler.add(test::glider_datagram(i), i / 120.0, "test:1", keep);
   assembler.flush(keep);
   return frames;
+}
+
+/// A session in which somebody sits down for ten minutes, here and there; as it is on the disk.
+std::vector<journal::Entry> sitting_about() {
+  test::Wearer wearer;
+  for (int k = 0; k < 60; ++k) wearer.sit(2.0 * (k % 3), 1.5 * (k % 2), 0.5 * (k % 3));
+  std::vector<journal::Entry> entries{journal::SessionStart{"20261122T103303Z", 0, "test", journal::kVersion}};
+  for (const Event& event : wearer.events) entries.push_back(journal::entry_of(event));
+  entries.insert(entries.begin() + 100, journal::Announced{12.0, 3, 1, 0});
+  return entries;
+}
+
+class CheckpointTest : public JournalTest {
+ protected:
+  CheckpointTest() {
+    fs::create_directories(file_.parent_path());
+    told(mapper_, entries_);
+  }
+  /// As the solver tells a mapper.
+  void told(Mapper& mapper, const std::vector<journal::Entry>& entries) {
+    for (const auto& entry : entries) {
+      checkpoints_.add(entry);
+      journal::tell(mapper, entry);
+      checkpoints_.keep(entry, mapper);
+    }
+  }
+  std::optional<Checkpoints::Restored> restore(const std::vector<journal::Entry>& entries,
+                                               const MapperConfig& config = {}) {
+    return Checkpoints(journal_.get(), config).restore(entries);
+  }
+
+  std::unique_ptr<SessionJournal> journal_ = open(dir_);
+  const fs::path file_ = journal_->checkpoint_of("20261122T103303Z");
+  std::vector<journal::Entry> entries_ = sitting_about();
+  Checkpoints checkpoints_{journal_.get(), {}};
+  Mapper mapper_{{}};
+};
+
+TEST_F(CheckpointTest, TheSessionGoesOnFromIt) {
+  auto restored = restore(entries_);
+  ASSERT_TRUE(restored);
+  EXPECT_GT(restored->entries, entries_.size() / 3);
+  ASSERT_LT(restored->entries, entries_.size());
+  for (std::size_t k = restored->entries; k < entries_.size(); ++k) journal::tell(restored->mapper, entries_[k]);
+  const auto map = restored->mapper.snapshot(), undisturbed = mapper_.snapshot();
+  ASSERT_THAT(map->objects, SizeIs(undisturbed->objects.size()));
+  for (std::size_t k = 0; k < map->objects.size(); ++k)
+    EXPECT_EQ(map->objects[k].pose.p, undisturbed->objects[k].pose.p);
+  EXPECT_EQ(map->trajectory.size(), undisturbed->trajectory.size());
+}
+
+TEST_F(CheckpointTest, CountsOnlyForTheJournalThatItIsOf) {
+  auto without_note = entries_;
+  std::erase_if(without_note, [](const auto& e) { return std::holds_alternative<journal::Announced>(e); });
+  EXPECT_TRUE(restore(without_note)) << "nothing is mapped from what was announced";
+  auto changed = entries_;
+  std::get<KeyPose>(changed[50]).path_m += 0.001;
+  EXPECT_FALSE(restore(changed));
+  auto shorter = entries_;
+  shorter.erase(shorter.begin() + 50);
+  EXPECT_FALSE(restore(shorter));
+  shorter.resize(60);
+  EXPECT_FALSE(restore(shorter));
+  MapperConfig other;
+  other.hand.tip_m = 0.15;
+  EXPECT_FALSE(restore(entries_, other));
+}
+
+TEST_F(CheckpointTest, ADamagedOneIsNone) {
+  const std::string bytes = text(file_);
+  ASSERT_GT(bytes.size(), 1000U);
+  for (std::size_t at = 0; at < bytes.size(); at += bytes.size() / 50) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    std::ofstream(file_, std::ios::binary) << damaged;
+    EXPECT_FALSE(restore(entries_)) << at;
+    std::ofstream(file_, std::ios::binary) << bytes.substr(0, at);
+    EXPECT_FALSE(restore(entries_)) << at;
+  }
+}
+
+TEST_F(CheckpointTest, GoesWithTheNextSession) {
+  ASSERT_TRUE(fs::exists(file_));
+  checkpoints_.add(journal::SessionStart{"20261122T120000Z", 0, "test", journal::kVersion});
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(CheckpointTest, NoneOnADiskThatIsFull) {
+  Config::Journal config = unlimited();
+  config.min_free_mb = 1e12;
+  fs::create_directories(dir_ / "full");
+  auto opened = SessionJournal::open(dir_ / "full", config);
+  ASSERT_TRUE(opened) << opened.error();
+  const fs::path file = (*opened)->checkpoint_of("20261122T103303Z");
+  fs::create_directories(file.parent_path());
+  Checkpoints checkpoints(opened->get(), {});
+  Mapper mapper{{}};
+  for (const auto& entry : entries_) {
+    checkpoints.add(entry);
+    journal::tell(mapper, entry);
+    checkpoints.keep(entry, mapper);
+  }
+  EXPECT_TRUE(fs::is_empty(file.parent_path()));
 }
 
 class PipelineJournal : public JournalTest {

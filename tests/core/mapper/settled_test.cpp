@@ -133,12 +133,16 @@ struct Session {
   graph::Graph graph;
 };
 
-Session mapped(const std::vector<Event>& events, int most_free) {
+MapperConfig long_day(int most_free) {
   MapperConfig config;
   config.hand.tip_m = 0.18;
   config.solver.most_free_key_poses = most_free;
   config.solver.kept_free_key_poses = 2 * most_free / 3;
-  Mapper mapper(config);
+  return config;
+}
+
+Session mapped(const std::vector<Event>& events, int most_free) {
+  Mapper mapper(long_day(most_free));
   for (const Event& event : events) mapper.add(event);
   mapper.finish();
   return {mapper.snapshot(), mapper.graph()};
@@ -175,6 +179,38 @@ TEST(LongDay, TheMapIsTheSame) {
   ASSERT_EQ(map->rooms.size(), 1u);
   ASSERT_EQ(all->rooms.size(), 1u);
   EXPECT_NEAR(map->rooms[0].area_m2, all->rooms[0].area_m2, 0.2);
+}
+
+TEST(LongDay, GoesOnFromACheckpointAsIfNothingHadHappened) {
+  const auto events = rounds(5);
+  MapperConfig config = long_day(300);
+  Mapper mapper(config);
+  std::size_t next = 0;
+  while (!std::holds_alternative<Trace>(events[next]) || mapper.snapshot()->time_s < 250.0) mapper.add(events[next++]);
+  mapper.add(events[next++]);
+  ASSERT_FALSE(mapper.graph().folded.empty());
+  const std::string checkpoint = mapper.checkpoint();
+  auto restored = Mapper::restore(config, checkpoint);
+  ASSERT_TRUE(restored);
+  EXPECT_EQ(restored->snapshot()->revision, mapper.snapshot()->revision);
+  EXPECT_EQ(restored->snapshot()->objects.size(), mapper.snapshot()->objects.size());
+  EXPECT_EQ(restored->snapshot()->trajectory.size(), mapper.snapshot()->trajectory.size());
+  for (; next < events.size(); ++next) restored->add(events[next]);
+  restored->finish();
+  const auto a = restored->snapshot(), b = mostly_settled().map;
+  ASSERT_EQ(a->objects.size(), b->objects.size());
+  for (std::size_t k = 0; k < a->objects.size(); ++k) {
+    EXPECT_EQ(a->objects[k].pose.p, b->objects[k].pose.p);
+    EXPECT_EQ(a->objects[k].size, b->objects[k].size);
+  }
+  EXPECT_EQ(a->trajectory.back().T_map_pelvis.p, b->trajectory.back().T_map_pelvis.p);
+  EXPECT_EQ(a->graph.loop_closures, b->graph.loop_closures);
+
+  EXPECT_FALSE(Mapper::restore(config, std::string_view(checkpoint).substr(0, checkpoint.size() - 1)));
+  EXPECT_FALSE(Mapper::restore(config, checkpoint + "x"));
+  EXPECT_FALSE(Mapper::restore(config, "no checkpoint"));
+  for (std::size_t cut = 0; cut < checkpoint.size(); cut += 1009)
+    EXPECT_FALSE(Mapper::restore(config, std::string_view(checkpoint).substr(0, cut)));
 }
 
 TEST(LongDay, TheGraphDoesNotGrowWithIt) {

@@ -352,7 +352,7 @@ std::vector<SuitFrame> glider_frames(std::uint32_t begin, std::uint32_t end) {
 /// A session in which somebody sits down for ten minutes, here and there; as it is on the disk.
 std::vector<journal::Entry> sitting_about() {
   test::Wearer wearer;
-  for (int k = 0; k < 60; ++k) wearer.sit(2.0 * (k % 3), 1.5 * (k % 2), 0.5 * (k % 3));
+  for (int k = 0; k < 55; ++k) wearer.sit(2.0 * (k % 3), 1.5 * (k % 2), 0.5 * (k % 3));
   std::vector<journal::Entry> entries{journal::SessionStart{"20261122T103303Z", 0, "test", journal::kVersion}};
   for (const Event& event : wearer.events) entries.push_back(journal::entry_of(event));
   entries.insert(entries.begin() + 100, journal::Announced{12.0, 3, 1, 0});

@@ -186,8 +186,11 @@ void fields(V& v, MapperConfig::Odometry& c) {
   v.number("heading_rad_per_sqrt_s", c.heading_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
   v.number("magnetic_rad_per_sqrt_s", c.magnetic_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
   v.number("magnetic_after_s", c.magnetic_after_s, Range{"s", 0, 3600});
+  v.number("heading_return_s", c.heading_return_s, Range{"s", 0.1, 1e6});
   v.number("heading_rad_per_rad", c.heading_rad_per_rad, Range{"rad/rad", 0, 1});
-  v.number("typical_heading_share", c.typical_heading_share, Range{"1", 0.01, 1});
+  v.number("north_sigma_rad", c.north_sigma_rad, Range{"rad", 1e-05, 3.1416});
+  v.number("north_rate_rad_per_s", c.north_rate_rad_per_s, Range{"rad/s", 1e-07, 1});
+  v.number("north_rad_per_sqrt_s", c.north_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
   v.number("scale_sigma", c.scale_sigma, Range{"1", 0, 1});
   v.number("tilt_rad", c.tilt_rad, Range{"rad", 0.0001, 3.1416});
   v.number("floor_m", c.floor_m, Range{"m", 0.0001, 10});

@@ -7,9 +7,8 @@
 namespace kinemap::graph {
 namespace {
 
-bool finite(const Pose& T) {
-  return T.p.allFinite() && T.q.coeffs().allFinite() && std::abs(T.q.squaredNorm() - 1.0) < 1e-6;
-}
+bool unit(const Eigen::Quaterniond& q) { return q.coeffs().allFinite() && std::abs(q.squaredNorm() - 1.0) < 1e-6; }
+bool finite(const Pose& T) { return T.p.allFinite() && unit(T.q); }
 bool positive(double sigma) { return std::isfinite(sigma) && sigma > 0.0; }
 bool sound(const Loss& loss) { return loss.kind == Loss::Kind::None || positive(loss.scale); }
 
@@ -34,6 +33,8 @@ class Check {
       require(t.fixed || (t.sigma.allFinite() && t.sigma.minCoeff() > 0.0), "touch point", i,
               "has a sigma that is not positive");
     }
+    for (std::size_t i = 0; i < g_.scalars.size(); ++i)
+      require(std::isfinite(g_.scalars[i]), "scalar", i, "is not finite");
   }
 
   void pose_factors() {
@@ -58,6 +59,28 @@ class Check {
       const PriorFactor& f = g_.priors[k];
       pose_exists(f.i, "prior factor", k);
       require(finite(f.T_map_i) && f.sqrt_information.allFinite(), "prior factor", k, kBadNumbers);
+    }
+  }
+
+  void heading_factors() {
+    for (std::size_t k = 0; k < g_.compasses.size(); ++k) {
+      const CompassFactor& f = g_.compasses[k];
+      pose_exists(f.i, "compass factor", k), pose_exists(f.j, "compass factor", k);
+      scalar_exists(f.north, "compass factor", k);
+      require(unit(f.q_odom_i) && unit(f.q_odom_j) && std::isfinite(f.decay) && positive(f.sigma_rad), "compass factor",
+              k, kBadNumbers);
+      require(f.i != f.j || f.decay == 0.0, "compass factor", k, "compares a pose with itself");
+    }
+    for (std::size_t k = 0; k < g_.drifts.size(); ++k) {
+      const DriftFactor& f = g_.drifts[k];
+      for (const std::size_t scalar : {f.a, f.b, f.rate}) scalar_exists(scalar, "drift factor", k);
+      require(f.a != f.b && f.a != f.rate && f.b != f.rate, "drift factor", k, "names one scalar twice");
+      require(std::isfinite(f.dt_s) && positive(f.sigma_rad), "drift factor", k, kBadNumbers);
+    }
+    for (std::size_t k = 0; k < g_.scalar_priors.size(); ++k) {
+      const ScalarPrior& f = g_.scalar_priors[k];
+      scalar_exists(f.scalar, "scalar prior", k);
+      require(std::isfinite(f.mean) && positive(f.sigma), "scalar prior", k, kBadNumbers);
     }
   }
 
@@ -127,6 +150,9 @@ class Check {
   void pose_exists(std::size_t i, const char* what, std::size_t index) {
     require(i < g_.poses.size(), what, index, "refers to a pose that the graph does not have");
   }
+  void scalar_exists(std::size_t i, const char* what, std::size_t index) {
+    require(i < g_.scalars.size(), what, index, "refers to a scalar that the graph does not have");
+  }
   bool landmark_exists(std::size_t i, const char* what, std::size_t index) {
     require(i < g_.landmarks.size(), what, index, "refers to a landmark that the graph does not have");
     return i < g_.landmarks.size();
@@ -141,6 +167,7 @@ std::optional<std::string> find_fault(const Graph& graph) {
   Check check(graph);
   check.variables();
   check.pose_factors();
+  check.heading_factors();
   check.landmark_factors();
   check.folded_factors();
   return check.fault;

@@ -61,6 +61,60 @@ bool BetweenCost::Evaluate(double const* const* x, double* residuals, double** j
   return true;
 }
 
+CompassCost::CompassCost(const CompassFactor& factor) : factor_(factor) {
+  set_num_residuals(1);
+  if (factor.i == factor.j)
+    *mutable_parameter_block_sizes() = {7, 1};
+  else
+    *mutable_parameter_block_sizes() = {7, 7, 1};
+}
+
+/// r = (wrap(o_j − north) − decay · wrap(o_i − north)) / sigma, o = heading_offset.
+bool CompassCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const int last = factor_.i == factor_.j ? 1 : 2;
+  const double north = x[last][0];
+  const auto term = [&](int k, const Eigen::Quaterniond& q_odom, double weight) {
+    Eigen::RowVector3d d;
+    double* out = jacobian(jacobians, k);
+    const double offset = heading_offset(pose_from(x[k]).q, q_odom, out != nullptr ? &d : nullptr);
+    if (out != nullptr) {
+      std::fill_n(out, 7, 0.0);
+      Eigen::Map<Eigen::RowVector3d>{out + 3} = weight * d;
+    }
+    return weight * wrap_angle(offset - north);
+  };
+  residuals[0] = term(last - 1, factor_.q_odom_j, 1.0 / factor_.sigma_rad);
+  if (last == 2) residuals[0] += term(0, factor_.q_odom_i, -factor_.decay / factor_.sigma_rad);
+  if (double* out = jacobian(jacobians, last)) out[0] = (factor_.decay - 1.0) / factor_.sigma_rad;
+  return true;
+}
+
+DriftCost::DriftCost(const DriftFactor& factor) : factor_(factor) {
+  set_num_residuals(1);
+  *mutable_parameter_block_sizes() = {1, 1, 1};
+}
+
+/// r = (wrap(b − a) − rate·dt) / sigma.
+bool DriftCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  residuals[0] = (wrap_angle(x[1][0] - x[0][0]) - x[2][0] * factor_.dt_s) / factor_.sigma_rad;
+  if (double* out = jacobian(jacobians, 0)) out[0] = -1.0 / factor_.sigma_rad;
+  if (double* out = jacobian(jacobians, 1)) out[0] = 1.0 / factor_.sigma_rad;
+  if (double* out = jacobian(jacobians, 2)) out[0] = -factor_.dt_s / factor_.sigma_rad;
+  return true;
+}
+
+ScalarPriorCost::ScalarPriorCost(const ScalarPrior& factor) : factor_(factor) {
+  set_num_residuals(1);
+  *mutable_parameter_block_sizes() = {1};
+}
+
+/// r = (x − mean) / sigma.
+bool ScalarPriorCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  residuals[0] = (x[0][0] - factor_.mean) / factor_.sigma;
+  if (double* out = jacobian(jacobians, 0)) out[0] = 1.0 / factor_.sigma;
+  return true;
+}
+
 PoseCost::PoseCost(const Graph& graph, Indices gravity, Indices floors, Indices priors)
     : graph_(graph), gravity_(gravity), floors_(floors), priors_(priors) {
   const std::size_t rows = 2 * gravity.size() + floors.size() + 6 * priors.size();

@@ -24,6 +24,36 @@ class BetweenCost final : public ceres::CostFunction {
   const BetweenFactor& factor_;
 };
 
+/// Compass factor (poses i, j, north), or (pose j, north) when i = j.
+class CompassCost final : public ceres::CostFunction {
+ public:
+  explicit CompassCost(const CompassFactor& factor);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const CompassFactor& factor_;
+};
+
+/// Drift factor (scalars a, b, rate).
+class DriftCost final : public ceres::CostFunction {
+ public:
+  explicit DriftCost(const DriftFactor& factor);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const DriftFactor& factor_;
+};
+
+/// Prior on a scalar.
+class ScalarPriorCost final : public ceres::CostFunction {
+ public:
+  explicit ScalarPriorCost(const ScalarPrior& factor);
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+ private:
+  const ScalarPrior& factor_;
+};
+
 /// All factors on one pose alone: gravity, floors, priors.
 class PoseCost final : public ceres::CostFunction {
  public:

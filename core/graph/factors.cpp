@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/graph/factors.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -39,6 +40,16 @@ Vector6 between_error(const Pose& T_map_i, const Pose& T_map_j, const Pose& T_i_
 
 Vector6 prior_error(const Pose& T_map_i, const Pose& measured, Matrix6* d_i) {
   return between_error(Pose{}, T_map_i, measured, nullptr, d_i);
+}
+
+double heading_offset(const Eigen::Quaterniond& q_map_i, const Eigen::Quaterniond& q_odom_i, Eigen::RowVector3d* d_i) {
+  const Eigen::Quaterniond q = q_map_i * q_odom_i.conjugate();
+  if (d_i != nullptr) {
+    const double n = std::max(1e-12, q.w() * q.w() + q.z() * q.z());  // 0: upside down against each other
+    const Eigen::RowVector3d d_map((q.w() * q.y() + q.z() * q.x()) / n, (q.z() * q.y() - q.w() * q.x()) / n, 1.0);
+    *d_i = d_map * q_map_i.toRotationMatrix();
+  }
+  return wrap_angle(2.0 * std::atan2(q.z(), q.w()));
 }
 
 Eigen::Vector2d gravity_error(const Pose& T_map_i, const Vector3d& up, Eigen::Matrix<double, 2, 6>* d_i) {

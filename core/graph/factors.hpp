@@ -19,6 +19,11 @@ Vector6 between_error(const Pose& T_map_i, const Pose& T_map_j, const Pose& T_i_
 /// e = between_error(identity, T_map_i, measured): [R_mᵀ (p_i − p_m); log(q_m⁻¹ q_i)].
 Vector6 prior_error(const Pose& T_map_i, const Pose& measured, Matrix6* d_i);
 
+/// How far pose i is turned about the vertical from where odometry has it: the turn about z, rad, that is left of
+/// q_map_i·q_odom_i⁻¹ without its tilt (swing-twist decomposition). `d_i` is in the tangent of the pose's rotation.
+double heading_offset(const Eigen::Quaterniond& q_map_i, const Eigen::Quaterniond& q_odom_i,
+                      Eigen::RowVector3d* d_i = nullptr);
+
 /// e = the level part (x, y) of R_map_i·up; for small tilts the tilt in rad.
 Eigen::Vector2d gravity_error(const Pose& T_map_i, const Eigen::Vector3d& up, Eigen::Matrix<double, 2, 6>* d_i);
 

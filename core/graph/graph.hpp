@@ -70,6 +70,32 @@ struct BetweenFactor {
   Loss loss;
 };
 
+/// The suit's compass. Pose k is turned about the vertical by o_k = yaw(q_map_k · q_odom_k⁻¹) against what the suit
+/// says, of which `north` is the lasting part; the rest, m_k = o_k − north, is a first-order Gauss-Markov process that
+/// decays with time: e = m_j − decay·m_i, over sigma. With i = j and decay 0 it says how large m_j may be at all.
+struct CompassFactor {
+  std::size_t i = 0, j = 0;
+  std::size_t north = 0;  ///< index in Graph::scalars, rad
+  Eigen::Quaterniond q_odom_i = Eigen::Quaterniond::Identity(), q_odom_j = Eigen::Quaterniond::Identity();
+  double decay = 1.0;  ///< e^(−Δt/τ)
+  double sigma_rad = 0.01;
+};
+
+/// An angle drifts at an unknown constant rate: wrap(b − a) − rate·dt, over sigma. Indices in Graph::scalars.
+struct DriftFactor {
+  std::size_t a = 0, b = 0;  ///< rad
+  std::size_t rate = 0;      ///< rad/s
+  double dt_s = 1.0;
+  double sigma_rad = 0.01;
+};
+
+/// Gaussian prior on a scalar.
+struct ScalarPrior {
+  std::size_t scalar = 0;
+  double mean = 0.0;
+  double sigma = 1.0;
+};
+
 /// Gravity: the direction up, seen in the pose's frame (unit). Residual: the level part of R_map_i·up, over sigma
 /// (rad).
 struct GravityFactor {
@@ -163,8 +189,12 @@ struct Graph {
   std::size_t first_free_pose = 0;  ///< those before are constants: they move no more, and have no covariance
   std::vector<Landmark> landmarks;
   std::vector<TouchPoint> touch_points;
+  std::vector<double> scalars;  ///< slow states of the suit: where its norths are (rad), and how fast they turn (rad/s)
 
   std::vector<BetweenFactor> between;
+  std::vector<CompassFactor> compasses;
+  std::vector<DriftFactor> drifts;
+  std::vector<ScalarPrior> scalar_priors;
   std::vector<GravityFactor> gravity;
   std::vector<FloorFactor> floors;
   std::vector<PriorFactor> priors;

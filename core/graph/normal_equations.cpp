@@ -16,6 +16,7 @@ std::vector<int> tangent_sizes(const Graph& graph) {
   std::fill_n(sizes.begin(), std::min(graph.first_free_pose, sizes.size()), 0);
   for (const Landmark& l : graph.landmarks) sizes.push_back(l.active ? dimension(l.kind) : 0);
   for (const TouchPoint& t : graph.touch_points) sizes.push_back(t.fixed ? 0 : 3);
+  sizes.insert(sizes.end(), graph.scalars.size(), 1);
   return sizes;
 }
 

@@ -27,7 +27,10 @@ auto contact_key(const ContactFactor& f) { return std::tie(f.i, f.landmark, f.to
 }  // namespace
 
 Values::Values(const Graph& graph)
-    : poses(graph.poses.size()), landmarks(graph.landmarks.size()), touch_points(graph.touch_points.size()) {
+    : poses(graph.poses.size()),
+      landmarks(graph.landmarks.size()),
+      touch_points(graph.touch_points.size()),
+      scalars(graph.scalars) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& T = graph.poses[i];
     poses[i] = {T.p.x(), T.p.y(), T.p.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w()};
@@ -47,6 +50,7 @@ void Values::write_to(Graph& graph) const {
   for (std::size_t i = 0; i < touch_points.size(); ++i) {
     graph.touch_points[i].p_hand = Eigen::Map<const Eigen::Vector3d>(touch_points[i].data());
   }
+  graph.scalars = scalars;
 }
 
 bool Values::all_finite() const {
@@ -54,7 +58,7 @@ bool Values::all_finite() const {
     return std::all_of(block.begin(), block.end(), [](double x) { return std::isfinite(x); });
   };
   return std::all_of(poses.begin(), poses.end(), finite) && std::all_of(landmarks.begin(), landmarks.end(), finite) &&
-         std::all_of(touch_points.begin(), touch_points.end(), finite);
+         std::all_of(touch_points.begin(), touch_points.end(), finite) && finite(scalars);
 }
 
 double evaluate_cost(const std::vector<ResidualBlock>& blocks) {
@@ -73,6 +77,7 @@ ResidualBlocks::ResidualBlocks(const Graph& graph, Values& values, std::size_t f
     : graph_(graph), values_(values), first_free_pose_(first_free_pose) {
   blocks.reserve(graph.between.size() + graph.poses.size() + graph.contacts.size() + graph.seats.size());
   add_pose_factors();
+  add_headings();
   add_contacts();
   add_landmark_factors();
   add_touch_priors();
@@ -91,6 +96,20 @@ void ResidualBlocks::add_pose_factors() {
     if (gravity.empty() && floors.empty() && priors.empty()) continue;
     add(pose_costs_.emplace_back(graph_, gravity, floors, priors), {static_cast<VariableId>(i)});
   }
+}
+
+void ResidualBlocks::add_headings() {
+  for (const CompassFactor& f : graph_.compasses) {
+    const CompassCost& cost = compass_costs_.emplace_back(f);
+    const VariableId i = static_cast<VariableId>(f.i), j = static_cast<VariableId>(f.j);
+    if (f.i == f.j)
+      add(cost, {j, scalar_id(f.north)});
+    else
+      add(cost, {i, j, scalar_id(f.north)});
+  }
+  for (const DriftFactor& f : graph_.drifts)
+    add(drift_costs_.emplace_back(f), {scalar_id(f.a), scalar_id(f.b), scalar_id(f.rate)});
+  for (const ScalarPrior& f : graph_.scalar_priors) add(scalar_prior_costs_.emplace_back(f), {scalar_id(f.scalar)});
 }
 
 void ResidualBlocks::add_contacts() {
@@ -163,7 +182,9 @@ void ResidualBlocks::add(const ceres::CostFunction& cost, std::initializer_list<
     free = free || id >= poses || id >= first_free_pose_;
     block.parameters[k] = id < poses               ? values_.poses[id].data()
                           : id < poses + landmarks ? values_.landmarks[id - poses].data()
-                                                   : values_.touch_points[id - poses - landmarks].data();
+                          : id < poses + landmarks + values_.touch_points.size()
+                              ? values_.touch_points[id - poses - landmarks].data()
+                              : &values_.scalars[id - poses - landmarks - values_.touch_points.size()];
   }
   (free ? blocks : constant).push_back(block);
 }
@@ -174,6 +195,11 @@ VariableId ResidualBlocks::landmark_id(std::size_t landmark) const {
 
 VariableId ResidualBlocks::touch_id(std::size_t touch) const {
   return static_cast<VariableId>(values_.poses.size() + values_.landmarks.size() + touch);
+}
+
+VariableId ResidualBlocks::scalar_id(std::size_t scalar) const {
+  return static_cast<VariableId>(values_.poses.size() + values_.landmarks.size() + values_.touch_points.size() +
+                                 scalar);
 }
 
 }  // namespace kinemap::graph

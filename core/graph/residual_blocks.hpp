@@ -32,9 +32,10 @@ struct Values {
   std::vector<std::array<double, 7>> poses;
   std::vector<std::array<double, 7>> landmarks;
   std::vector<std::array<double, 3>> touch_points;
+  std::vector<double> scalars;
 };
 
-/// Numbers all variables of a graph: poses, then landmarks, then touching points.
+/// Numbers all variables of a graph: poses, then landmarks, touching points and scalars.
 using VariableId = std::uint32_t;
 
 struct ResidualBlock {
@@ -68,6 +69,7 @@ class ResidualBlocks {
 
  private:
   void add_pose_factors();
+  void add_headings();
   void add_contacts();
   void add_landmark_factors();
   void add_touch_priors();
@@ -75,6 +77,7 @@ class ResidualBlocks {
   void add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables);
   [[nodiscard]] VariableId landmark_id(std::size_t landmark) const;
   [[nodiscard]] VariableId touch_id(std::size_t touch) const;
+  [[nodiscard]] VariableId scalar_id(std::size_t scalar) const;
 
   const Graph& graph_;
   Values& values_;
@@ -84,6 +87,9 @@ class ResidualBlocks {
   std::vector<std::uint32_t> contacts_;  // sorted by pose, landmark, touching point
   // Deques: what they hold never moves, and is allocated by the page.
   std::deque<BetweenCost> between_costs_;
+  std::deque<CompassCost> compass_costs_;
+  std::deque<DriftCost> drift_costs_;
+  std::deque<ScalarPriorCost> scalar_prior_costs_;
   std::deque<PoseCost> pose_costs_;
   std::deque<ContactCost> contact_costs_;
   std::deque<SeatCost> seat_costs_;

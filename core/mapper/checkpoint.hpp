@@ -21,6 +21,9 @@ inline void fields(Archive& a, Landmark& x) { a(x.kind, x.x, x.anchor, x.active)
 inline void fields(Archive& a, TouchPoint& x) { a(x.p_hand, x.prior, x.sigma, x.fixed, x.turn_noise_rad_per_m); }
 inline void fields(Archive& a, Loss& x) { a(x.kind, x.scale); }
 inline void fields(Archive& a, BetweenFactor& x) { a(x.i, x.j, x.T_i_j, x.sqrt_information, x.loss); }
+inline void fields(Archive& a, CompassFactor& x) { a(x.i, x.j, x.north, x.q_odom_i, x.q_odom_j, x.decay, x.sigma_rad); }
+inline void fields(Archive& a, DriftFactor& x) { a(x.a, x.b, x.rate, x.dt_s, x.sigma_rad); }
+inline void fields(Archive& a, ScalarPrior& x) { a(x.scalar, x.mean, x.sigma); }
 inline void fields(Archive& a, GravityFactor& x) { a(x.i, x.up, x.sigma_rad); }
 inline void fields(Archive& a, FloorFactor& x) { a(x.i, x.p_i, x.z, x.sigma_m, x.loss); }
 inline void fields(Archive& a, PriorFactor& x) { a(x.i, x.T_map_i, x.sqrt_information); }
@@ -36,8 +39,8 @@ inline void fields(Archive& a, FoldedFactor& x) {
   a(x.landmark, x.touch, x.at, x.p_hand, x.quarter_turns, x.sqrt_information, x.residual, x.rest, x.weighted_squares);
 }
 inline void fields(Archive& a, Graph& x) {
-  a(x.poses, x.first_free_pose, x.landmarks, x.touch_points, x.between, x.gravity, x.floors, x.priors, x.contacts,
-    x.seats, x.parallels, x.landmark_priors, x.folded);
+  a(x.poses, x.first_free_pose, x.landmarks, x.touch_points, x.scalars, x.compasses, x.drifts, x.scalar_priors,
+    x.between, x.gravity, x.floors, x.priors, x.contacts, x.seats, x.parallels, x.landmark_priors, x.folded);
 }
 
 }  // namespace graph

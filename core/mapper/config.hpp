@@ -13,15 +13,17 @@ struct MapperConfig {
     double translation_m_per_sqrt_m = 0.022;  ///< random walk of the level position (1 cm per 20 cm, paper section V)
     double translation_m_per_sqrt_s = 0.003;  ///< the same while standing
     double vertical_m_per_sqrt_m = 0.012;     ///< random walk of the height, false steps included
-    double heading_rad_per_sqrt_s = 0.035;    ///< random walk of the heading; wide, since its errors are correlated
-    /// The same beside metal, where the compass draws the heading to a wrong north: while a table or screen is traced
-    /// (or the suit says that the field is wrong) and for some time after it, until the heading has come back.
-    double magnetic_rad_per_sqrt_s = 0.05;
+    /// The heading's passing error is drawn by noise and comes back by itself; harder beside metal, where the compass
+    /// draws it to a wrong north: while a table or screen is traced (or the suit says that the field is wrong) and for
+    /// some time after it.
+    double heading_rad_per_sqrt_s = 0.02;
+    double magnetic_rad_per_sqrt_s = 0.07;
     double magnetic_after_s = 8.0;
-    double heading_rad_per_rad = 0.02;  ///< of each turn
-    /// Association needs the heading noise so wide that it covers the worst metal; what is published says how large
-    /// errors usually are, which is this part of it.
-    double typical_heading_share = 0.4;
+    double heading_return_s = 20.0;        ///< time constant of coming back
+    double heading_rad_per_rad = 0.02;     ///< of each turn
+    double north_sigma_rad = 0.1;          ///< passing error that a session may begin with
+    double north_rate_rad_per_s = 0.0015;  ///< the suit's north turns at a constant rate, about so fast (5 °/min)
+    double north_rad_per_sqrt_s = 0.0175;  ///< and wanders so
     /// Of the length of steps, constant for a wearer: no closure sees it (a closed loop scales to a closed loop), so
     /// that it only widens what is published of lengths and places.
     double scale_sigma = 0.02;

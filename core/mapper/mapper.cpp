@@ -40,7 +40,7 @@ class Mapper::Impl {
   bool add(const KeyPose& key_pose) {
     odometry_.add(key_pose, state_.graph);
     if (const auto& way = state_.graph.between; !way.empty())
-      pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back());
+      pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back().T_i_j, step_sigma(state_.graph, way.back()));
     time_s_ = key_pose.time_s;
     if (key_pose.id + 1 < snapshot_->graph.key_poses + kTrajectoryLag) return false;
     publish(std::make_shared<MapSnapshot>(*snapshot_));  // the objects are as they were
@@ -180,7 +180,7 @@ class Mapper::Impl {
   void publish() {
     auto map = std::make_shared<MapSnapshot>();
     const auto walls = cut_walls(state_, config_.walls);
-    const auto marginals = graph::Marginals::compute(with_typical_noise(state_.graph, config_.odometry));
+    const auto marginals = graph::Marginals::compute(state_.graph);
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);
@@ -228,7 +228,7 @@ class Mapper::Impl {
   [[nodiscard]] TrajectoryPose trajectory_pose(std::size_t k) const {
     const KeyPose& key_pose = odometry_.key_poses()[k];
     return {key_pose.id, key_pose.time_s, state_.graph.poses[pose_of(key_pose.id)], key_pose.T_odom_pelvis,
-            k == 0 ? StepSigma{} : step_sigma(state_.graph.between[k - 1])};
+            k == 0 ? StepSigma{} : step_sigma(state_.graph, state_.graph.between[k - 1])};
   }
 
   /// Takes the way of long ago out of the graph, where it is well known by now.

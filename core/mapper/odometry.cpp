@@ -55,20 +55,15 @@ Pose odometry_step(const KeyPose& from, const KeyPose& to) {
   return before.inverse() * (moved_world ? stayed(before, after) : after);
 }
 
-graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
-                                         const MapperConfig::Odometry& config) {
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
   if (to.discontinuity) return break_sqrt_information(to.time_s - from.time_s, config);
   const double dt = std::max(0.01, to.time_s - from.time_s);
   const double level = std::sqrt(squared(config.translation_m_per_sqrt_m) * to.path_m +
                                  squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
   const double up = std::sqrt(squared(config.vertical_m_per_sqrt_m) * to.path_m +
                               squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
-  const double heading =
-      std::sqrt(squared(magnetic ? config.magnetic_rad_per_sqrt_s : config.heading_rad_per_sqrt_s) * dt +
-                squared(config.heading_rad_per_rad * to.turn_rad));
   graph::Matrix6 information = graph::Matrix6::Zero();
-  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad,
-      1.0 / heading;
+  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad, 0.0;
   return information;
 }
 
@@ -79,6 +74,7 @@ void Odometry::add(const KeyPose& key_pose, graph::Graph& graph) {
     prior.T_map_i = key_pose.T_odom_pelvis;
     prior.sqrt_information = graph::Matrix6::Identity() * 1e4;
     graph.priors.push_back(prior);
+    compass_.begin(key_pose, 0, graph);
   } else {
     add_between(key_pose, graph);
   }
@@ -98,17 +94,23 @@ void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) {
   between.i = graph.poses.size() - 1;
   between.j = graph.poses.size();
   between.T_i_j = odometry_step(from, key_pose);
-  between.sqrt_information = odometry_sqrt_information(from, key_pose, key_pose.time_s <= suspect_until_s_, config_);
+  between.sqrt_information = odometry_sqrt_information(from, key_pose, config_);
   graph.between.push_back(between);
   graph.poses.push_back(graph.poses.back() * between.T_i_j);
+  if (key_pose.discontinuity)
+    compass_.begin(key_pose, between.j, graph);
+  else
+    compass_.add(from, key_pose, between.i, between.j, key_pose.time_s <= suspect_until_s_, graph);
 }
 
 void Odometry::suspect_heading(double begin_s, double end_s, graph::Graph& graph) {
   if (key_poses_.empty() || !key_poses_.back().field_disturbed) suspect_until_s_ = std::max(suspect_until_s_, end_s);
-  for (std::size_t k = key_poses_.size(); k-- > 1 && key_poses_[k].time_s > begin_s;)
-    if (key_poses_[k].time_s < end_s && !key_poses_[k].field_disturbed)
-      graph.between[k - 1].sqrt_information =
-          odometry_sqrt_information(key_poses_[k - 1], key_poses_[k], true, config_);
+  for (auto f = graph.compasses.rbegin(); f != graph.compasses.rend(); ++f) {
+    const std::size_t k = key_poses_.size() - (graph.poses.size() - f->j);
+    if (key_poses_[k].time_s <= begin_s) return;
+    if (f->i != f->j && key_poses_[k].time_s < end_s && !key_poses_[k].field_disturbed)
+      f->sigma_rad = heading_sigma(key_poses_[k - 1], key_poses_[k], true, config_);
+  }
 }
 
 void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
@@ -150,22 +152,12 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
   pose.p.z() += level_z_ - (pose * floor.p_i).z();
 }
 
-StepSigma step_sigma(const graph::BetweenFactor& between) {
+StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between) {
   const graph::Matrix6& information = between.sqrt_information;  // diagonal
-  return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), 1.0 / information(5, 5)};
-}
-
-graph::Matrix6 typical_noise(const graph::Matrix6& sqrt_information, const MapperConfig::Odometry& config) {
-  constexpr double kUnknown = 1.0;  // 1/rad: a restart's heading stays unknown
-  graph::Matrix6 out = sqrt_information;
-  if (out(5, 5) > kUnknown) out.row(5) /= config.typical_heading_share;
-  return out;
-}
-
-graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config) {
-  graph::Graph out = graph;
-  for (auto& between : out.between) between.sqrt_information = typical_noise(between.sqrt_information, config);
-  return out;
+  const auto compass = std::lower_bound(graph.compasses.begin(), graph.compasses.end(), between.j,
+                                        [](const graph::CompassFactor& f, std::size_t pose) { return f.j < pose; });
+  const double heading = compass->i != compass->j ? compass->sigma_rad : 1.0 / information(5, 5);
+  return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), heading};
 }
 
 }  // namespace kinemap

@@ -7,15 +7,16 @@
 #include "core/events.hpp"
 #include "core/graph/graph.hpp"
 #include "core/map.hpp"
+#include "core/mapper/compass.hpp"
 #include "core/mapper/config.hpp"
 
 namespace kinemap {
 
-/// Turns key poses into poses and factors of the graph: odometry (paper eq. 2), gravity, and the floor under the stance
-/// foot.
+/// Turns key poses into poses and factors of the graph: odometry (paper eq. 2), the compass, gravity, and the floor
+/// under the stance foot.
 class Odometry {
  public:
-  explicit Odometry(const MapperConfig::Odometry& config) : config_(config) {}
+  explicit Odometry(const MapperConfig::Odometry& config) : config_(config), compass_(config) {}
 
   /// Appends a pose to the graph with its factors. Key poses come in order, without gaps.
   void add(const KeyPose& key_pose, graph::Graph& graph);
@@ -34,7 +35,7 @@ class Odometry {
   /// Its members, for Mapper::checkpoint().
   template <class A>
   void fields(A& a) {
-    a(key_poses_, suspect_until_s_, level_z_, last_stance_z_, levels_, off_level_, steady_, on_level_);
+    a(compass_, key_poses_, suspect_until_s_, level_z_, last_stance_z_, levels_, off_level_, steady_, on_level_);
   }
   /// Height of the level that the wearer stands on, map frame, m.
   [[nodiscard]] double floor_z() const { return level_z_; }
@@ -44,6 +45,7 @@ class Odometry {
   void add_floor(const KeyPose& key_pose, graph::Graph& graph);
 
   MapperConfig::Odometry config_;
+  Compass compass_;
   std::vector<KeyPose> key_poses_;
   double suspect_until_s_ = -1e9;  ///< key poses to come until then are beside metal, or just were
   double level_z_ = 0.0;
@@ -57,18 +59,11 @@ class Odometry {
 /// The way between two key poses, in the first one's frame, as the suit says; after a break, as a body can have moved.
 Pose odometry_step(const KeyPose& from, const KeyPose& to);
 
-/// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame.
-/// `magnetic`: beside metal.
-graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, bool magnetic,
-                                         const MapperConfig::Odometry& config);
+/// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame. Of
+/// the heading it has something to say at a break only; else that is the compass' matter.
+graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
 
-/// The noise of a step of the odometry, as the graph has it.
-StepSigma step_sigma(const graph::BetweenFactor& between);
-
-/// The noise of one step with the heading as errors usually show it.
-graph::Matrix6 typical_noise(const graph::Matrix6& sqrt_information, const MapperConfig::Odometry& config);
-
-/// The graph with the heading noise that errors usually show, for the covariances that are published.
-graph::Graph with_typical_noise(const graph::Graph& graph, const MapperConfig::Odometry& config);
+/// The noise of a step of the odometry and the compass, as the graph has it.
+StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between);
 
 }  // namespace kinemap

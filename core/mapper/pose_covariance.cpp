@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "core/mapper/odometry.hpp"
-
 namespace kinemap {
 namespace {
 
@@ -29,12 +27,12 @@ void PoseCovariance::set(const Pose& T_map_pelvis, const Matrix6& marginal) {
   covariance_ = in_map_axes(T_map_pelvis.q, marginal);
 }
 
-void PoseCovariance::add(const Pose& T_map_i, const graph::BetweenFactor& between) {
-  const Pose T_map_j = T_map_i * between.T_i_j;
+void PoseCovariance::add(const Pose& T_map_i, const Pose& T_i_j, const StepSigma& step) {
+  const Pose T_map_j = T_map_i * T_i_j;
   // Of x, y and heading only, and these about the map's z: what the wearer leans is small against what is unknown here.
-  const Matrix6 U = typical_noise(between.sqrt_information, config_);
   Matrix6 noise = Matrix6::Zero();
-  for (const int k : {0, 1, 5}) noise(k, k) = 1.0 / (U(k, k) * U(k, k));
+  noise.diagonal() << step.level_m, step.level_m, 0.0, 0.0, 0.0, step.heading_rad;
+  noise = noise.cwiseAbs2().eval();
 
   // p_j = p_i + R_i t: an error of the heading at i turns the way to j.
   Matrix6 carry = Matrix6::Identity();

@@ -16,8 +16,8 @@ class PoseCovariance {
 
   /// The marginal of the newest key pose, in the tangent of core/graph/graph.hpp.
   void set(const Pose& T_map_pelvis, const graph::Matrix6& marginal);
-  /// A key pose more, joined to the one before by `between`, whose pose is `T_map_i`.
-  void add(const Pose& T_map_i, const graph::BetweenFactor& between);
+  /// A key pose more, `T_i_j` from the one before, whose pose is `T_map_i`, with the noise of that step.
+  void add(const Pose& T_map_i, const Pose& T_i_j, const StepSigma& step);
 
   /// As MapSnapshot::pelvis_covariance has it, with the scale of the way, which the graph does not know; `p_first` is
   /// where the way began.

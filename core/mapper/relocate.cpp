@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/mapper/associate.hpp"
+#include "core/mapper/compass.hpp"
 #include "core/mapper/wall_frame.hpp"
 
 namespace kinemap {
@@ -167,7 +168,8 @@ std::vector<Fit> all_fits(const MapState& state, const Parts& parts) {
 
 std::optional<std::size_t> open_break(const graph::Graph& graph) {
   for (std::size_t k = graph.between.size(); k-- > graph.first_free_pose;)
-    if (graph.between[k].sqrt_information(5, 5) < 1.0 / kLoose) return k;
+    if (const double heading = graph.between[k].sqrt_information(5, 5); heading > 0.0 && heading < 1.0 / kLoose)
+      return k;
   return std::nullopt;
 }
 
@@ -204,6 +206,7 @@ void relocate(MapState& state, const Pose& T_map_part) {
   graph::BetweenFactor& way = state.graph.between[*broken];
   for (std::size_t i = way.j; i < state.graph.poses.size(); ++i)
     state.graph.poses[i] = T_map_part * state.graph.poses[i];
+  turn_norths(state.graph, way.j, heading_of(T_map_part.q));
   way.T_i_j = state.graph.poses[way.i].inverse() * state.graph.poses[way.j];
   for (const int k : {0, 1}) way.sqrt_information(k, k) = 1.0 / kHeldLevel;
   way.sqrt_information(5, 5) = 1.0 / kHeldHeading;

@@ -7,6 +7,7 @@
 
 #include "core/graph/fold.hpp"
 #include "core/mapper/associate.hpp"
+#include "core/mapper/compass.hpp"
 #include "core/mapper/wall_frame.hpp"
 
 namespace kinemap {
@@ -109,6 +110,8 @@ void leave_out(graph::Graph& graph, std::size_t end, const std::vector<std::size
   keep_free(graph.priors, end, renumbered);
   std::erase_if(graph.between, [end](const graph::BetweenFactor& f) { return f.j < end; });
   for (auto& f : graph.between) f.i = renumbered(f.i), f.j = renumbered(f.j);
+  leave_out_norths(graph, end);
+  for (auto& f : graph.compasses) f.i = renumbered(f.i), f.j = renumbered(f.j);
   for (auto& f : graph.contacts) f.i = renumbered(f.i);
   for (auto& f : graph.seats) f.i = renumbered(f.i);
   std::erase_if(graph.landmark_priors,

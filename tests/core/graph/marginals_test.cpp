@@ -23,6 +23,7 @@ struct Dense {
     std::vector<int> sizes(graph.poses.size(), 6);
     for (const Landmark& l : graph.landmarks) sizes.push_back(l.active ? dimension(l.kind) : 0);
     for (const TouchPoint& t : graph.touch_points) sizes.push_back(t.fixed ? 0 : 3);
+    sizes.insert(sizes.end(), graph.scalars.size(), 1);
     starts_.push_back(0);
     for (const int s : sizes) starts_.push_back(starts_.back() + s);
     const MatrixXd J = test::differentiate([this](const Eigen::VectorXd& d) { return residuals(d); }, starts_.back());
@@ -52,6 +53,7 @@ struct Dense {
     for (TouchPoint& t : g.touch_points) {
       if (const Eigen::VectorXd d = part(id++); d.size() == 3) t.p_hand += d;
     }
+    for (double& x : g.scalars) x += part(id++)(0);
     Values values(g);
     const ResidualBlocks problem(g, values, 0);
     std::vector<double> all;

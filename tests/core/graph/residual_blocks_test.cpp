@@ -116,6 +116,15 @@ double plain_cost(const Graph& g) {
     sum += evaluate(f.loss, std::pow(((g.poses[f.i] * f.p_i).z() - f.z) / f.sigma_m, 2)).rho;
   for (const auto& f : g.priors)
     sum += (f.sqrt_information * prior_error(g.poses[f.i], f.T_map_i, nullptr)).squaredNorm();
+  for (const auto& f : g.compasses) {
+    const double north = g.scalars[f.north];
+    const double m_i = wrap_angle(heading_offset(g.poses[f.i].q, f.q_odom_i) - north);
+    const double m_j = wrap_angle(heading_offset(g.poses[f.j].q, f.q_odom_j) - north);
+    sum += std::pow((m_j - f.decay * m_i) / f.sigma_rad, 2);
+  }
+  for (const auto& f : g.drifts)
+    sum += std::pow((wrap_angle(g.scalars[f.b] - g.scalars[f.a]) - g.scalars[f.rate] * f.dt_s) / f.sigma_rad, 2);
+  for (const auto& f : g.scalar_priors) sum += std::pow((g.scalars[f.scalar] - f.mean) / f.sigma, 2);
   for (const auto& f : g.contacts) {
     if (!g.landmarks[f.landmark].active) continue;
     const Eigen::Vector3d p = g.poses[f.i] * (f.T_i_hand * g.touch_points[f.touch].p_hand);
@@ -171,7 +180,8 @@ TEST(ResidualBlocks, OrderOfTheContactsDoesNotMatter) {
   std::set<std::tuple<std::size_t, std::size_t, std::size_t>> triples;
   for (const ContactFactor& f : graph.contacts) triples.emplace(f.i, f.landmark, f.touch);
   const ResidualBlocks problem(graph, values, 0);
-  const std::size_t others = graph.between.size() + graph.poses.size() + graph.seats.size() + 1 + 1 + 1;
+  const std::size_t others = graph.between.size() + graph.poses.size() + graph.seats.size() + graph.compasses.size() +
+                             graph.drifts.size() + graph.scalar_priors.size() + 1 + 1 + 1;
   EXPECT_EQ(problem.blocks.size(), triples.size() + others);
 }
 

@@ -18,6 +18,7 @@ class Builder {
     trajectory_factors();
     contacts();
     landmark_factors();
+    headings();
     return std::move(scene_);
   }
 
@@ -99,6 +100,22 @@ class Builder {
     g_.landmark_priors.push_back({Scene::kScreen, 6, 0.08, 0.05});
   }
 
+  /// A suit whose north is elsewhere and turns: scalar 0 is the rate, 1 and 2 the norths of the two rounds.
+  void headings() {
+    constexpr double kRate = 0.002, kSeconds = 30.0;
+    g_.scalars = {kRate, 0.4, 0.4 + kRate * kSeconds};
+    const auto north = [&](std::size_t i) { return i < o_.poses / 2 ? std::size_t{1} : std::size_t{2}; };
+    const auto suit = [&](std::size_t i, std::size_t north_of) {
+      return (level_pose({}, n(0.02) - g_.scalars[north_of]).q * g_.poses[i].q).normalized();
+    };
+    for (std::size_t i = 0; i < o_.poses; ++i) {
+      const std::size_t k = north(i), before = i > 0 ? i - 1 : 0;
+      g_.compasses.push_back({before, i, k, suit(before, k), suit(i, k), i > 0 ? 0.9 : 0.0, 0.02});
+    }
+    g_.drifts.push_back({1, 2, 0, kSeconds, 0.05});
+    g_.scalar_priors.push_back({0, kRate, 0.01});
+  }
+
   SceneOptions o_;
   Random random_;
   Scene scene_;
@@ -123,6 +140,7 @@ Graph perturbed(const Graph& graph, double size, unsigned seed) {
   for (TouchPoint& t : out.touch_points) {
     if (!t.fixed) t.p_hand += random.vector(0.2 * size);
   }
+  for (double& x : out.scalars) x += random.uniform(-size, size);
   return out;
 }
 
@@ -131,6 +149,7 @@ Graph moved(const Graph& graph, double yaw, const Vector3d& shift) {
   Graph out = graph;
   for (Pose& p : out.poses) p = T * p;
   for (PriorFactor& f : out.priors) f.T_map_i = T * f.T_map_i;
+  for (std::size_t k = 1; k < out.scalars.size(); ++k) out.scalars[k] += yaw;
   for (FloorFactor& f : out.floors) f.z += shift.z();
   for (Landmark& l : out.landmarks) {
     l.x[l.kind == LandmarkKind::Wall ? 0 : 3] += yaw;

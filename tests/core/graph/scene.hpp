@@ -7,8 +7,8 @@
 namespace kinemap::graph::test {
 
 /// A small room with all kinds of landmarks and factors: `truth` has the true values, and factors that hold there to
-/// `noise` standard deviations. Landmark 0 and 1 are walls at right angles, 2 a table, 3 a tilted screen, 4 a seat;
-/// touch point 0 is free, 1 fixed.
+/// `noise` standard deviations; the suit's north is at 0.4 rad and turns. Landmark 0 and 1 are walls at right angles, 2
+/// a table, 3 a tilted screen, 4 a seat; touch point 0 is free, 1 fixed.
 struct Scene {
   Graph truth;
   static constexpr std::size_t kWallA = 0, kWallB = 1, kTable = 2, kScreen = 3, kSeat = 4;

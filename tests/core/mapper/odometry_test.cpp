@@ -58,17 +58,18 @@ TEST(Odometry, AStairLeadsToAnotherLevelAndBack) {
 TEST(Odometry, NoiseGrowsWithWayTimeAndTurn) {
   const MapperConfig::Odometry config;
   KeyPose from = at(0, 0, 1), to = at(1, 0.2, 1);
-  const auto base = odometry_sqrt_information(from, to, false, config);
+  const auto base = odometry_sqrt_information(from, to, config);
   KeyPose farther = to, later = to, turned = to, restarted = to;
   farther.path_m = 2.0;
   later.time_s = 10.0;
   turned.turn_rad = 3.0;
   restarted.discontinuity = true;
-  EXPECT_LT(odometry_sqrt_information(from, farther, false, config)(0, 0), base(0, 0));
-  EXPECT_LT(odometry_sqrt_information(from, later, false, config)(5, 5), base(5, 5));
-  EXPECT_LT(odometry_sqrt_information(from, to, true, config)(5, 5), base(5, 5));
-  EXPECT_LT(odometry_sqrt_information(from, turned, false, config)(5, 5), base(5, 5));
-  EXPECT_LE(odometry_sqrt_information(from, restarted, false, config)(0, 0), 1.0);
+  EXPECT_LT(odometry_sqrt_information(from, farther, config)(0, 0), base(0, 0));
+  EXPECT_LE(odometry_sqrt_information(from, restarted, config)(0, 0), 1.0);
+  const double heading = heading_sigma(from, to, false, config);
+  EXPECT_GT(heading_sigma(from, later, false, config), heading);
+  EXPECT_GT(heading_sigma(from, to, true, config), heading);
+  EXPECT_GT(heading_sigma(from, turned, false, config), heading);
 }
 
 TEST(Odometry, AResetOfTheSuitsWorldMovesNobody) {
@@ -117,9 +118,9 @@ TEST(Odometry, ABreakInTheRecordOfOneWorldIsWhereTheSuitSays) {
   EXPECT_NEAR(odometry_step(from, to).p.x(), 6.0, 1e-9);
 }
 
-/// Information of the heading on the way to key pose `k`, taken each second.
-double heading_information(const graph::Graph& graph, std::size_t k) {
-  return graph.between.at(k - 1).sqrt_information(5, 5);
+/// Noise of the heading on the way to key pose `k`.
+double heading_noise(const graph::Graph& graph, KeyPoseId k) {
+  return step_sigma(graph, graph.between.at(k - 1)).heading_rad;
 }
 
 TEST(Odometry, ADisturbedFieldWidensTheHeadingAndForSomeTimeAfter) {
@@ -132,12 +133,12 @@ TEST(Odometry, ADisturbedFieldWidensTheHeadingAndForSomeTimeAfter) {
     k.field_disturbed = i == 8 || i == 9;
     odometry.add(k, graph);
   }
-  const double usual = heading_information(graph, 1);
+  const double usual = heading_noise(graph, 1);
   for (KeyPoseId i = 1; i < 20; ++i) {
     if (i >= 8 && i <= 12)
-      EXPECT_LT(heading_information(graph, i), 0.9 * usual) << i;
+      EXPECT_GT(heading_noise(graph, i), 1.1 * usual) << i;
     else
-      EXPECT_DOUBLE_EQ(heading_information(graph, i), usual) << i;
+      EXPECT_DOUBLE_EQ(heading_noise(graph, i), usual) << i;
   }
 }
 
@@ -153,12 +154,12 @@ TEST(Odometry, WhatTheSuitSaysOfTheFieldCountsMoreThanTheGuess) {
     for (KeyPoseId i = 0; i < 10; ++i) add(i);
     odometry.suspect_heading(4.5, 14.5, graph);
     for (KeyPoseId i = 10; i < 20; ++i) add(i);
-    const double usual = heading_information(graph, 1);
+    const double usual = heading_noise(graph, 1);
     for (KeyPoseId i = 1; i < 20; ++i) {
       if (!told && i >= 5 && i <= 14)
-        EXPECT_LT(heading_information(graph, i), 0.9 * usual) << i;
+        EXPECT_GT(heading_noise(graph, i), 1.1 * usual) << i;
       else
-        EXPECT_DOUBLE_EQ(heading_information(graph, i), usual) << i;
+        EXPECT_DOUBLE_EQ(heading_noise(graph, i), usual) << i;
     }
   }
 }

@@ -16,7 +16,7 @@ cmake --build --preset "$preset" --parallel "$jobs"
 results=$PWD/build/$preset/test-results.xml
 log=$PWD/build/$preset/test.log
 code=0
-ctest --preset "$preset" --parallel "$jobs" --output-junit "$results" --output-log "$log" \
+ctest --preset "$preset" --parallel "$jobs" --timeout 600 --output-junit "$results" --output-log "$log" \
   --test-output-size-passed 10000000 --test-output-size-failed 10000000 || code=$?
 # The package on a system of its own, where that can be had.
 system_log=$PWD/build/system-test.log

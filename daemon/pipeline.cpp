@@ -246,13 +246,13 @@ void Pipeline::note_map() {
   journal_->append(map);
 }
 
-/// Solver thread.
 void Pipeline::publish() {
   const auto map = mapper_.snapshot();
   map_.set(map);
   published_.set({{map->time_s, map->revision, map->objects.size(), map->rooms.size()}, sessions_begun_});
 }
 
+/// Solver thread.
 void Pipeline::solve(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { events_.wake(); });
   restore(stop);
@@ -325,7 +325,8 @@ void Pipeline::fold(const journal::SessionStart&) {
 }
 
 void Pipeline::fold(const journal::StreamSilence&) {
-  mapper_.finish();
+  // Whoever stops the daemon does not wait for the last trials: the journal has all that they would start from.
+  mapper_.finish([stop = solver_.get_stop_token()] { return stop.stop_requested(); });
   publish();
 }
 

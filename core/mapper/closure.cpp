@@ -120,9 +120,10 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   return false;
 }
 
-bool LoopCloser::revise(MapState& state) {
+bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
   bool any = false;
   for (std::size_t v = 0; v < state.observations.size(); ++v) {
+    if (enough && enough()) break;
     if (state.observations[v].key_pose < state.graph.first_free_pose) continue;  // settled
     if (visits_of(state, state.observations[v].landmark).size() < 2) continue;
     MapState trial = state;

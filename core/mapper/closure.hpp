@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/graph/optimizer.hpp"
@@ -31,7 +32,8 @@ class LoopCloser {
   /// for a trial, and keeps it when the map then costs less by more than a closure may cost. What was taken back is
   /// free to find its place anew. Visits on the settled part of the way stay. True when something changed; `state` is
   /// optimised then.
-  bool revise(MapState& state);
+  /// `enough` (none: never) ends it early.
+  bool revise(MapState& state, const std::function<bool()>& enough = {});
 
   /// Optimises, then chooses the sides of rectangles anew for the contacts and optimises again while that changes any.
   bool settle(MapState& state, int iterations) const;

@@ -87,11 +87,11 @@ class Mapper::Impl {
     return true;
   }
 
-  void finish() {
+  void finish(const std::function<bool()>& enough) {
     if (state_.graph.poses.empty()) return;
     closer_.settle(state_, config_.solver.final_iterations);
     if (judge_touch()) closer_.settle(state_, config_.solver.final_iterations);
-    closer_.revise(state_);
+    closer_.revise(state_, enough);
     if (closer_.reconsider(state_)) closer_.settle(state_, config_.solver.final_iterations);
     publish();
   }
@@ -279,7 +279,7 @@ void Mapper::set_wearer(const WearerInfo& wearer) { impl_->set_wearer(wearer); }
 bool Mapper::add(const Event& event) {
   return std::visit([this](const auto& e) { return impl_->add(e); }, event);
 }
-void Mapper::finish() { impl_->finish(); }
+void Mapper::finish(const std::function<bool()>& enough) { impl_->finish(enough); }
 std::string Mapper::checkpoint() const { return impl_->checkpoint(); }
 std::optional<Mapper> Mapper::restore(const MapperConfig& config, std::string_view checkpoint) {
   Mapper mapper(config);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,8 +34,10 @@ class Mapper {
   /// sitting, and every few key poses, so that the trajectory keeps up with a wearer who only walks.
   bool add(const Event& event);
 
-  /// No more events: optimises to convergence and publishes a last snapshot.
-  void finish();
+  /// No more events: optimises to convergence, takes back what the optimum contradicts, and publishes a last snapshot.
+  /// On a long day that is minutes of work; it ends early, with a map that is whole, once `enough` says so (asked
+  /// between trials; none: never).
+  void finish(const std::function<bool()>& enough = {});
 
   /// All that it knows, as bytes that only the same program with the same configuration can go on from. Best taken when
   /// a trace or sitting has just been published: then what goes on from it gives the same map, byte for byte.

@@ -66,6 +66,7 @@ TEST(Revise, TakesBackTheVisitThatTheWayContradicts) {
   MapState state = seats_taken_for_one({0.0, 5.0});
   LoopCloser closer{MapperConfig{}};
   ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_FALSE(closer.revise(state, [] { return true; })) << "ended early, nothing was tried";
   EXPECT_TRUE(closer.revise(state));
   EXPECT_EQ(state.summary.loop_closures_revoked, 1U);
   ASSERT_EQ(state.graph.landmarks.size(), 2U);

@@ -166,23 +166,6 @@ std::optional<std::size_t> last_visit(const MapState& state, std::size_t landmar
   return std::nullopt;
 }
 
-/// Variance of the way from pose j to pose i along the level unit vector `axis`, m².
-double variance_along(const MapState& state, const graph::Marginals& marginals, std::size_t i, std::size_t j,
-                      const Eigen::Vector3d& axis) {
-  if (i == j) return 0.0;
-  std::vector<graph::Variable> poses;
-  Eigen::Matrix<double, 1, 12> h = Eigen::Matrix<double, 1, 12>::Zero();
-  const auto add = [&](std::size_t pose, double sign) {
-    if (pose < state.graph.first_free_pose) return;  // a constant
-    const auto column = static_cast<Eigen::Index>(6 * poses.size());
-    h.segment<3>(column) = sign * axis.transpose() * state.graph.poses[pose].q.toRotationMatrix();
-    poses.push_back({graph::Variable::Kind::Pose, pose});
-  };
-  add(i, 1.0), add(j, -1.0);
-  const auto used = h.leftCols(static_cast<Eigen::Index>(6 * poses.size()));
-  return poses.empty() ? 0.0 : (used * marginals.joint(poses) * used.transpose())(0, 0);
-}
-
 /// Walls that continue each other are told apart by where along them they were touched: squared sigmas, nullopt when
 /// too far apart.
 std::optional<double> along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a,
@@ -222,22 +205,42 @@ double gate(double sigma, int dimensions) {
   return k * std::pow(1.0 - h + lo * std::sqrt(h), 3.0);
 }
 
-std::optional<Interval> contact_interval(const MapState& state, const ObservationRecord& visit,
-                                         const WallFrame& frame) {
-  std::optional<Interval> out;
-  const auto extend = [&](const Eigen::Vector3d& p) {
-    if (std::abs(frame.distance(p)) > kOnPlane) return;
-    const double s = frame.along(p);
-    if (!out) out = Interval{s, s};
-    out->lo = std::min(out->lo, s), out->hi = std::max(out->hi, s);
+double variance_along(const MapState& state, const graph::Marginals& marginals, std::size_t i, std::size_t j,
+                      const Eigen::Vector3d& axis) {
+  if (i == j) return 0.0;
+  std::vector<graph::Variable> poses;
+  Eigen::Matrix<double, 1, 12> h = Eigen::Matrix<double, 1, 12>::Zero();
+  const auto add = [&](std::size_t pose, double sign) {
+    if (pose < state.graph.first_free_pose) return;  // a constant
+    const auto column = static_cast<Eigen::Index>(6 * poses.size());
+    h.segment<3>(column) = sign * axis.transpose() * state.graph.poses[pose].q.toRotationMatrix();
+    poses.push_back({graph::Variable::Kind::Pose, pose});
+  };
+  add(i, 1.0), add(j, -1.0);
+  const auto used = h.leftCols(static_cast<Eigen::Index>(6 * poses.size()));
+  return poses.empty() ? 0.0 : (used * marginals.joint(poses) * used.transpose())(0, 0);
+}
+
+std::vector<double> contacts_along(const MapState& state, const ObservationRecord& visit, const WallFrame& frame) {
+  std::vector<double> out;
+  const auto add = [&](const Eigen::Vector3d& p) {
+    if (std::abs(frame.distance(p)) <= kOnPlane) out.push_back(frame.along(p));
   };
   for (std::size_t k = visit.first_contact; k < visit.first_contact + visit.contacts; ++k) {
     const auto& c = state.graph.contacts[k];
-    extend(state.graph.poses[c.i] * (c.T_i_hand * state.graph.touch_points[c.touch].p_hand));
+    add(state.graph.poses[c.i] * (c.T_i_hand * state.graph.touch_points[c.touch].p_hand));
   }
   if (visit.settled && visit.settled->touched)
-    std::for_each(visit.settled->touched->begin(), visit.settled->touched->end(), extend);
+    std::for_each(visit.settled->touched->begin(), visit.settled->touched->end(), add);
   return out;
+}
+
+std::optional<Interval> contact_interval(const MapState& state, const ObservationRecord& visit,
+                                         const WallFrame& frame) {
+  const auto along = contacts_along(state, visit, frame);
+  if (along.empty()) return std::nullopt;
+  const auto [lo, hi] = std::minmax_element(along.begin(), along.end());
+  return Interval{*lo, *hi};
 }
 
 std::optional<Interval> contact_interval(const MapState& state, std::size_t wall) {

@@ -33,6 +33,10 @@ void merge(MapState& state, std::size_t from, const Candidate& candidate);
 /// merged into, and returns it. The visit must not be the landmark's only one.
 std::size_t split(MapState& state, std::size_t visit);
 
+/// Variance of the way from pose j to pose i along the level unit vector `axis`, m².
+double variance_along(const MapState& state, const graph::Marginals& marginals, std::size_t i, std::size_t j,
+                      const Eigen::Vector3d& axis);
+
 /// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma`
 /// (Wilson–Hilferty).
 double gate(double sigma, int dimensions);
@@ -44,5 +48,7 @@ struct Interval {
 std::optional<Interval> contact_interval(const MapState& state, std::size_t wall);
 /// The same of one visit, along the wall with the given frame.
 std::optional<Interval> contact_interval(const MapState& state, const ObservationRecord& visit, const WallFrame& frame);
+/// Where along the wall it lies on its contacts are (of what is settled: the ends), m.
+std::vector<double> contacts_along(const MapState& state, const ObservationRecord& visit, const WallFrame& frame);
 
 }  // namespace kinemap

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/mapper/directions.hpp"
+#include "core/mapper/free_space.hpp"
 #include "core/mapper/reassign.hpp"
 
 namespace kinemap {
@@ -88,13 +89,27 @@ bool LoopCloser::is_clear(const MapState& state, const graph::Marginals& margina
 }
 
 bool LoopCloser::close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
-                       const std::vector<Candidate>& found) {
+                       std::vector<Candidate> found) {
   const auto& config = config_.association;
-  if (found.empty() || found.front().evidence < config.min_evidence) return false;
+  if (found.empty()) return false;
+  // A closure may mend what contradicts the map as it stands: so much evidence a trial can bring at most.
+  const double apart = free_space_cost(state, &marginals, config.free_space_most);
+  std::optional<Trial> best;
+  double most = config.min_evidence;
+  for (Candidate& candidate : found) {
+    if (candidate.evidence + apart < config.min_evidence) continue;
+    Trial trial = attempt(state, newcomer, candidate);
+    candidate.evidence += apart - free_space_cost(trial.state, nullptr, config.free_space_most);
+    if (candidate.evidence < most) continue;
+    most = candidate.evidence;
+    best = std::move(trial);
+  }
+  if (!best) return false;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.evidence > y.evidence; });
   if (is_clear(state, marginals, found)) {
-    Trial trial = attempt(state, newcomer, found.front());
-    if (trial.cost_increase <= config.max_cost_increase) {
-      state = std::move(trial.state);
+    if (best->cost_increase <= config.max_cost_increase) {
+      state = std::move(best->state);
       ++state.summary.loop_closures;
       contradicted_.clear();  // the drift is another now
       return true;

@@ -61,10 +61,9 @@ class LoopCloser {
   [[nodiscard]] bool is_clear(const MapState& state, const graph::Marginals& marginals,
                               const std::vector<Candidate>& found) const;
 
-  /// Tries the newcomer's best candidate, unless another is about as good. True when it was accepted; `state` is
-  /// optimised then.
-  bool close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
-             const std::vector<Candidate>& found);
+  /// Tries the newcomer's candidates; the best, by what free space says too, is taken unless another is about as good.
+  /// True when it was accepted; `state` is optimised then.
+  bool close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals, std::vector<Candidate> found);
 
   MapperConfig config_;
   std::vector<std::array<std::size_t, 2>>

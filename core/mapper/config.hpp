@@ -79,8 +79,10 @@ struct MapperConfig {
     double table_density_per_m2 = 0.08;
     double screen_density_per_m2 = 0.08;
     double seat_density_per_m2 = 0.3;
-    double look_alike_share = 0.5;    ///< part of them that also have the same size, height and heading
-    double min_evidence = 0.0;        ///< 2 ln of the odds that it is the known one, to close a loop
+    double look_alike_share = 0.5;  ///< part of them that also have the same size, height and heading
+    double min_evidence = 0.0;      ///< 2 ln of the odds that it is the known one, to close a loop
+    double free_space_most = 12.0;  ///< 2 ln of the odds that one thing standing, or walked, through another may count
+                                    ///< for or against a closure; 0: it does not
     double max_cost_increase = 30.0;  ///< a closure that costs more (2 × robust cost) than this is taken back
     double min_relief = 20.0;  ///< a visit is taken off its object when the optimum without it costs so much less
     double ambiguity = 4.0;    ///< two candidates whose costs differ by less wait for more evidence

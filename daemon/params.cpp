@@ -48,7 +48,7 @@ std::optional<ApiError> check_params(const Params& params, const std::vector<Par
   std::set<std::string> seen;
   for (const auto& [name, value] : params) {
     const std::string shown = shortened(name);
-    if (std::none_of(specs.begin(), specs.end(), [&](const ParamSpec& spec) { return name == spec.name; }))
+    if (std::none_of(specs.begin(), specs.end(), [&name = name](const ParamSpec& spec) { return name == spec.name; }))
       return ApiError{
           .code = "bad_parameter",
           .message = "unknown parameter \"" + shown + "\"; there are" + (names.empty() ? " none here" : ": " + names),

@@ -96,6 +96,13 @@ Result<FirstLine> check_first_line(std::string_view bytes, const std::string& pa
                "\" in its first line"};
 }
 
+void add_damage(std::vector<Damage>& damage, std::size_t begin, std::size_t end) {
+  if (!damage.empty() && damage.back().offset + damage.back().bytes == begin)
+    damage.back().bytes += end - begin;
+  else
+    damage.push_back({begin, end - begin});
+}
+
 /// Pieces are of no use any more once the whole comes, and many. `from`: none is before it.
 void leave_out_finished(std::vector<Entry>& entries, const Entry& whole, std::size_t& from) {
   const bool traced = std::holds_alternative<Trace>(whole) || std::holds_alternative<Pivot>(whole);
@@ -163,25 +170,21 @@ Result<Contents> read(std::string_view bytes, const std::string& path) {
   if (!line) return Error{line.error()};
   Contents contents;
   contents.version = line->version;
-  contents.sound_bytes = line->length;
   std::size_t gesture = 0;
   for (std::size_t at = line->length; at < bytes.size();) {
     const auto payload = payload_at(bytes, at);
-    auto entry = payload ? decode(*payload) : std::nullopt;
-    if (entry) {
+    const std::size_t next = payload ? at + kHead + payload->size() : next_record(bytes, at + 1);
+    if (auto entry = payload ? decode(*payload) : std::nullopt) {
       leave_out_finished(contents.entries, *entry, gesture);
       contents.entries.push_back(std::move(*entry));
-      at += kHead + payload->size();
-      contents.sound_bytes = at;
-      continue;
+    } else if (payload || next < bytes.size()) {
+      add_damage(contents.damage, at, next);
+    } else {
+      contents.torn_bytes = next - at;
     }
-    const std::size_t next = next_record(bytes, at + 1);
-    if (next < bytes.size())
-      contents.damage.push_back({at, next - at});
-    else
-      contents.torn_bytes = bytes.size() - at;
     at = next;
   }
+  contents.sound_bytes = bytes.size() - contents.torn_bytes;
   return contents;
 }
 

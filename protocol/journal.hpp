@@ -81,8 +81,8 @@ struct Damage {
 struct Contents {
   std::uint32_t version = 0;  ///< of the format; 0: the first line is damaged, the records tell that it can be read
   std::vector<Entry> entries;
-  std::vector<Damage> damage;     ///< before and between records that can be read
-  std::uint64_t sound_bytes = 0;  ///< length up to the end of the last record that can be read: append here
+  std::vector<Damage> damage;     ///< before and between whole records, and whole records that say nothing known
+  std::uint64_t sound_bytes = 0;  ///< length up to the end of the last whole record: append here
   std::uint64_t torn_bytes = 0;   ///< after that: a record whose writing was cut short
 };
 

@@ -30,6 +30,7 @@ if [[ $tests == yes ]]; then
     chromium                                                # the live page is tested in it
     libsdformat-dev librsvg2-bin python3-pil python3-yaml   # exports are read with them
     groff-base                                              # the manual pages are
+    clang libclang-rt-14-dev                                # libFuzzer
     mmdebstrap systemd-container lintian                    # the package is installed, booted and looked at
   )
   # promtool reads /metrics. Its package starts a server where systemd runs, which is not ours to do.

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Sets up, builds and runs every test. KINEMAP_PRESET=asan, tsan or debug for another build than release; KINEMAP_JOBS compilers and tests
-# at a time (default 2).
+# Sets up, builds and runs every test; in the release build also the package on a system of its own (tools/test-system.sh) and the fuzz targets
+# (tools/fuzz.sh). KINEMAP_PRESET=asan, tsan or debug for another build than release; KINEMAP_JOBS compilers and tests at a time (default 2);
+# KINEMAP_FUZZ_SECONDS for each fuzz target (default 60; 0 leaves them out).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -18,15 +19,24 @@ log=$PWD/build/$preset/test.log
 code=0
 ctest --preset "$preset" --parallel "$jobs" --timeout 600 --output-junit "$results" --output-log "$log" \
   --test-output-size-passed 10000000 --test-output-size-failed 10000000 || code=$?
-# The package on a system of its own, where that can be had.
-system_log=$PWD/build/system-test.log
-system_code=77
+# The scripts that print a line for each of their tests, and what they ended with.
+scripts=()
+run_script() {
+  local name=$1 log=$PWD/build/$1.log ended=0
+  shift
+  "$@" 2>&1 | tee "$log" || ended=$?
+  ((ended == 0 || ended == 77)) || code=1
+  scripts+=("$name" "$ended" "$log")
+}
 if [[ $preset == release ]]; then
-  system_code=0
-  tools/test-system.sh 2>&1 | tee "$system_log" || system_code=$?
-  ((system_code == 0 || system_code == 77)) || code=1
+  run_script system-test tools/test-system.sh
+  if ((${KINEMAP_FUZZ_SECONDS:=60} > 0)); then
+    run_script fuzz tools/fuzz.sh "$KINEMAP_FUZZ_SECONDS"
+  else
+    run_script fuzz bash -c 'echo "SKIPPED: tools/fuzz.sh: KINEMAP_FUZZ_SECONDS is 0"; exit 77'
+  fi
 fi
-python3 - "$results" "$system_code" "$system_log" <<'PYTHON'
+python3 - "$results" "${scripts[@]}" <<'PYTHON'
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -54,13 +64,16 @@ for case in ElementTree.parse(sys.argv[1]).getroot().iter("testcase"):
     passed += int(cases.group(1)) - n_bad - n_skipped
     failed += n_bad
     skipped += n_skipped
-if sys.argv[2] == "77":
-    skipped += 1
-else:
-    with open(sys.argv[3], encoding="utf-8") as log:
-        steps = re.findall(r"^(ok|FAILED) ", log.read(), re.MULTILINE)
+for name, ended, path in zip(*[iter(sys.argv[2:])] * 3):
+    with open(path, encoding="utf-8") as log:
+        text = log.read()
+    if ended == "77":
+        print(f"SKIPPED: {name}:", text.strip().rpartition("\n")[2].removeprefix("SKIPPED: "))
+        skipped += 1
+        continue
+    steps = re.findall(r"^(ok|FAILED) ", text, re.MULTILINE)
     passed += steps.count("ok")
-    failed += max(steps.count("FAILED"), int(sys.argv[2] != "0"))
+    failed += max(steps.count("FAILED"), int(ended != "0"))
 print(f"{passed} passed, {failed} failed, {skipped} skipped")
 PYTHON
 exit "$code"

@@ -124,7 +124,9 @@ std::vector<WallStretch> wall_stretches(const MapSnapshot& map) {
 }
 
 std::span<const WallStretch> stretches_of(std::span<const WallStretch> stretches, std::uint32_t wall_id) {
-  return std::ranges::equal_range(stretches, wall_id, {}, &WallStretch::wall_id);
+  // Not equal_range, whose result clang 14 cannot compile.
+  return {std::ranges::lower_bound(stretches, wall_id, {}, &WallStretch::wall_id),
+          std::ranges::upper_bound(stretches, wall_id, {}, &WallStretch::wall_id)};
 }
 
 }  // namespace kinemap

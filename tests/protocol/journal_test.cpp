@@ -145,9 +145,24 @@ TEST(Journal, ARecordWithAGoodChecksumAndNonsenseInItIsDamage) {
   const auto contents = read(header() + record(bad) + record(twisted) + record(key_pose(0)), "j");
   ASSERT_TRUE(contents);
   EXPECT_THAT(contents->entries, SizeIs(1));
-  EXPECT_FALSE(contents->damage.empty());
+  EXPECT_THAT(contents->damage, SizeIs(1)) << "what lies side by side is one place";
   for (const std::string payload : {"", "\xA0", "\xFF", "\xA1\x64type\x01", "\xA1\x64type\x64mark"})
     EXPECT_FALSE(decode(payload)) << ::testing::PrintToString(payload);
+}
+
+TEST(Journal, SuchARecordAtTheEndIsDamageTooAndNotTorn) {
+  auto bad = key_pose(1);
+  bad.T_odom_pelvis.p.x() = std::numeric_limits<double>::quiet_NaN();
+  const auto whole = header() + record(key_pose(0)) + record(bad);
+  for (const std::size_t torn : {0U, 5U}) {
+    const auto contents = read(whole + record(key_pose(2)).substr(0, torn), "j");
+    ASSERT_TRUE(contents);
+    EXPECT_THAT(contents->entries, SizeIs(1));
+    ASSERT_THAT(contents->damage, SizeIs(1));
+    EXPECT_EQ(contents->damage[0].bytes, record(bad).size());
+    EXPECT_EQ(contents->sound_bytes, whole.size());
+    EXPECT_EQ(contents->torn_bytes, torn);
+  }
 }
 
 /// Whatever versions come: each format that was ever written opens, and is the same session in the current one.

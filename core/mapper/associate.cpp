@@ -265,6 +265,7 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
   for (std::size_t other = 0; other < landmarks.size(); ++other) {
     const Landmark& b = landmarks[other];
     if (!beyond.empty() && beyond[newcomer] != beyond[other]) continue;
+    if (state.landmarks[other].id == 0) continue;  // its own turn comes
     if (other == newcomer || !b.active || b.kind != a.kind || a.kind == LandmarkKind::Direction) continue;
     const Difference d = difference(state, newcomer, other, config);
     const Eigen::VectorXd e = d.of(a, b);

@@ -20,9 +20,9 @@ struct Candidate {
   double evidence = 0.0;  ///< 2 ln of the odds that both are one, against another object of the kind
 };
 
-/// Landmarks of the same kind that `newcomer` is compatible with, most evidence first: the difference of their numbers
-/// is judged by the joint marginal covariance of both (drift between the visits included) plus what two traces of one
-/// object differ by anyway, against the density of other objects that look the same.
+/// Accepted landmarks of the same kind that `newcomer` is compatible with, most evidence first: the difference of their
+/// numbers is judged by the joint marginal covariance of both (drift between the visits included) plus what two traces
+/// of one object differ by anyway, against the density of other objects that look the same.
 std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
                                   const MapperConfig::Association& config);
 

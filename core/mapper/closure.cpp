@@ -159,7 +159,7 @@ bool LoopCloser::reconsider(MapState& state) {
   bool any = false;
   auto marginals = graph::Marginals::compute(state.graph);
   for (std::size_t k = state.graph.landmarks.size(); marginals && k-- > 0;) {
-    if (!state.graph.landmarks[k].active) continue;
+    if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;
     auto found = candidates(state, k, *marginals, config_.association);
     std::erase_if(found, [&](const Candidate& c) {
       return std::find(contradicted_.begin(), contradicted_.end(), ordered(k, c.landmark)) != contradicted_.end();

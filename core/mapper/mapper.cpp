@@ -63,8 +63,12 @@ class Mapper::Impl {
       if (observation.landmark.kind != graph::LandmarkKind::Wall)
         odometry_.suspect_heading(trace.begin_s - kApproach, trace.end_s + config_.odometry.magnetic_after_s,
                                   state_.graph);
+    // All of them before any is associated: that may move the graph, and `points` are where it was.
+    std::vector<std::size_t> newcomers;
     for (const auto& observation : found.extraction.observations)
-      associate(add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
+      newcomers.push_back(
+          add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
+    for (const std::size_t newcomer : newcomers) associate(newcomer);
     publish();
     return true;
   }

@@ -98,6 +98,29 @@ TEST(Mapper, ThreeRoundsCorrectTheDrift) {
   EXPECT_NEAR((map->T_map_odom * last.p - map->trajectory.back().T_map_pelvis.p).norm(), 0.0, 1e-9);
 }
 
+TEST(Mapper, TheFirstOfTwoWallsInOneGestureJoinsThePartsTheSecondMovesAlong) {
+  Wearer wearer;
+  round_trip(wearer);
+  wearer.walk_to(1.5, 0.0);
+  wearer.restart(60.0, 2.5);
+  wearer.walk_to(3.0, 0.0);
+  trace_table(wearer, 3.0, 1.5);
+  wearer.sit(0.5, 2.0, -1.0);
+  const Eigen::Vector2d middle(2.0, 1.0);
+  trace_wall(wearer, {-0.5, -1.0}, {4.5, -1.0}, middle);
+  wearer.walk_to(3.5, 2.0);
+  std::vector<Eigen::Vector3d> round_the_corner;
+  for (double y = 0.0; y < 3.0; y += 0.2) round_the_corner.emplace_back(5.0, y, 1.2 + 0.2 * std::sin(5.0 * y));
+  for (double x = 5.0; x > 1.0; x -= 0.2) round_the_corner.emplace_back(x, 3.0, 1.2 + 0.2 * std::sin(5.0 * x));
+  wearer.trace(round_the_corner, middle);
+  const auto map = map_of(wearer);
+  EXPECT_EQ(count(*map, ObjectType::Wall), 4);
+  EXPECT_EQ(count(*map, ObjectType::Table), 1);
+  EXPECT_EQ(count(*map, ObjectType::Chair), 1);
+  EXPECT_EQ(map->graph.loop_closures, 5u);
+  EXPECT_LT(rmse(*map, wearer.truth, true), 0.1);
+}
+
 TEST(Mapper, TwoEqualTablesSideBySideStayTwo) {
   Wearer wearer(0.0012);
   for (int round = 0; round < 3; ++round) {

@@ -67,6 +67,13 @@ class Wearer {
     events.emplace_back(out);
   }
 
+  /// The suit is started anew after so many seconds: its world begins where the wearer is, in a heading of its own.
+  void restart(double seconds, double heading) {
+    time_ += seconds;
+    odom_ = level_pose({0.0, 0.0, 0.95}, heading);
+    key_pose(true);
+  }
+
   std::vector<Event> events;
   std::vector<Pose> truth;  ///< T_map_pelvis of each key pose
 
@@ -82,8 +89,9 @@ class Wearer {
     time_ += seconds;
   }
   [[nodiscard]] double moved() const { return path_; }
-  void key_pose() {
+  void key_pose(bool discontinuity = false) {
     KeyPose k;
+    k.discontinuity = discontinuity;
     k.id = static_cast<KeyPoseId>(key_poses_.size());
     k.time_s = time_;
     k.T_odom_pelvis = odom_;

@@ -56,6 +56,13 @@ void TraceFold::stretch(const Eigen::Vector3d& wrist) {
   extent_m_ = std::max({extent_m_, from_first, (wrist - farthest_wrist_).norm()});
 }
 
+void TraceFold::move(const Pose& T_odom_before) {
+  for (HandSample& sample : hand_) sample.T_odom_hand = T_odom_before * sample.T_odom_hand;
+  first_wrist_ = T_odom_before * first_wrist_;
+  farthest_wrist_ = T_odom_before * farthest_wrist_;
+  kept_ = T_odom_before * kept_;
+}
+
 std::optional<Event> TraceFold::close() {
   if (!open_) return std::nullopt;
   open_ = false;

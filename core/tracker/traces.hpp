@@ -29,6 +29,8 @@ class TraceFold {
   /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
   /// frame.
   void record(const SuitFrame& frame, const KeyPose& latest);
+  /// The suit's world is another one: `T_odom_before` takes what was in the old one to the new one.
+  void move(const Pose& T_odom_before);
   /// Ends an open trace (end of the stream, discontinuity).
   std::optional<Event> close();
   /// What was added to an open trace since the last call, if anything was; `hips` is the gesture's.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/tracker/tracker.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include "core/reach.hpp"
 #include "core/tracker/feet.hpp"
 #include "core/tracker/gesture.hpp"
 #include "core/tracker/key_poses.hpp"
@@ -26,7 +28,8 @@ class Tracker::Impl {
 
   void step(const SuitFrame& frame, std::vector<Event>& events) {
     ++stats_.frames;
-    if (frame.discontinuity) restart(events);
+    if (frame.discontinuity) restart(frame, events);
+    last_frame_s_ = frame.time_s;
     const auto soles = soles_of(frame, ball_height_m_);
 
     put(sitting_.step(frame, soles), events);
@@ -63,11 +66,14 @@ class Tracker::Impl {
   [[nodiscard]] const TrackerStats& stats() const { return stats_; }
 
  private:
-  void restart(std::vector<Event>& events) {
+  void restart(const SuitFrame& frame, std::vector<Event>& events) {
+    const bool stays = frame.time_s - last_frame_s_ < kJump;
     put(sitting_.reset(), events);
-    put(traces_.close(), events);
+    if (!stays) put(traces_.close(), events);
+    if (!stays) gesture_.reset();
     put(key_poses_.finish(), events);  // the last that is known before the break
-    gesture_.reset();
+    const Pose& T_odom_pelvis = frame[Segment::Pelvis];
+    if (stays) traces_.move(T_odom_pelvis * stayed(key_poses_.latest().T_odom_pelvis, T_odom_pelvis).inverse());
     stance_.reset();
     magnetic_.reset();
   }
@@ -88,6 +94,10 @@ class Tracker::Impl {
     stats_.path_m = key_poses_.total_path_m();
   }
 
+  /// s: in so short a break the body stays and only the suit's world moves; a gesture, which is inside the body, goes
+  /// on.
+  static constexpr double kJump = 0.1;
+
   double ball_height_m_;
   KeyPoseFold key_poses_;
   StanceFold stance_;
@@ -95,6 +105,7 @@ class Tracker::Impl {
   GestureFold gesture_;
   TraceFold traces_;
   SittingFold sitting_;
+  double last_frame_s_ = -HUGE_VAL;
   TrackerStats stats_;
 };
 

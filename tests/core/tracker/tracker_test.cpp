@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/core/tracker/support.hpp"
 
 namespace kinemap::test {
@@ -182,6 +184,38 @@ TEST(Tracker, AnotherOneGoesOnInTheMiddleOfAGesture) {
   }
 }
 
+TEST(Tracker, AGestureGoesOnWhenTheSuitsWorldJumpsFromOneFrameToTheNext) {
+  const Puppet puppet;
+  auto frames = perform(puppet, between_standing(10.0, [](double t) {
+                          Figure f = standing();
+                          f.arm = {on_hip(), drawing(t)};
+                          return f;
+                        }));
+  const Outcome whole = track(frames);
+  ASSERT_EQ(whole.traces.size(), 1u);
+  const auto jumped =
+      std::find_if(frames.begin(), frames.end(), [](const SuitFrame& frame) { return frame.time_s >= 6.0; });
+  const Pose T_new_old = level_pose({5, -3, 0}, 2.0);
+  jumped->discontinuity = true;
+  for (auto frame = jumped; frame != frames.end(); ++frame)
+    for (Pose& segment : frame->segments) segment = T_new_old * segment;
+  const Outcome outcome = track(frames);
+  ASSERT_EQ(outcome.traces.size(), 1u);
+  EXPECT_EQ(outcome.traces[0].begin_s, whole.traces[0].begin_s);
+  EXPECT_EQ(outcome.traces[0].end_s, whole.traces[0].end_s);
+  std::size_t after = 0;
+  for (const HandContact& contact : outcome.traces[0].contacts) {
+    const bool in_new_world = contact.time_s >= jumped->time_s;
+    after += in_new_world;
+    const Pose& T_odom_key = outcome.key(contact.key_pose);
+    EXPECT_LT((T_odom_key.p - (in_new_world ? T_new_old : Pose{}) * Eigen::Vector3d(0, 0, T_odom_key.p.z())).norm(),
+              1.0)
+        << "each contact refers to a key pose of its own world";
+  }
+  EXPECT_GT(after, 5u);
+  EXPECT_NEAR(double(outcome.traces[0].contacts.size()), double(whole.traces[0].contacts.size()), 1.0);
+}
+
 TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
   const Puppet puppet;
   const auto acts = between_standing(16.0, [&](double t) {
@@ -191,6 +225,7 @@ TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
   });
   auto frames = perform(puppet, acts);
   for (const double at : {7.0, 14.0}) {
+    std::erase_if(frames, [at](const SuitFrame& frame) { return frame.time_s >= at - 0.3 && frame.time_s < at; });
     for (SuitFrame& frame : frames) {
       if (frame.time_s >= at) {
         frame.discontinuity = true;

@@ -30,12 +30,12 @@ bool any_robust(const Range& factors, Indices indices) {
   return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t k) { return robust(factors[k].loss); });
 }
 
+}  // namespace
+
 int rows_of(const ContactFactor& f, LandmarkKind kind) {
   if (kind == LandmarkKind::Wall) return 1;
   return 1 + (f.edge != Edge::None ? 1 : 0) + (f.corner != Edge::None ? 1 : 0);
 }
-
-}  // namespace
 
 BetweenCost::BetweenCost(const BetweenFactor& factor) : factor_(factor) {
   set_num_residuals(robust(factor.loss) ? 7 : 6);
@@ -61,7 +61,8 @@ bool BetweenCost::Evaluate(double const* const* x, double* residuals, double** j
   return true;
 }
 
-CompassCost::CompassCost(const CompassFactor& factor) : factor_(factor) {
+CompassCost::CompassCost(const CompassFactor& factor, const NoiseScales& noise)
+    : factor_(factor), sigma_(noise.heading * factor.sigma_rad) {
   set_num_residuals(1);
   if (factor.i == factor.j)
     *mutable_parameter_block_sizes() = {7, 1};
@@ -83,35 +84,37 @@ bool CompassCost::Evaluate(double const* const* x, double* residuals, double** j
     }
     return weight * wrap_angle(offset - north);
   };
-  residuals[0] = term(last - 1, factor_.q_odom_j, 1.0 / factor_.sigma_rad);
-  if (last == 2) residuals[0] += term(0, factor_.q_odom_i, -factor_.decay / factor_.sigma_rad);
-  if (double* out = jacobian(jacobians, last)) out[0] = (factor_.decay - 1.0) / factor_.sigma_rad;
+  residuals[0] = term(last - 1, factor_.q_odom_j, 1.0 / sigma_);
+  if (last == 2) residuals[0] += term(0, factor_.q_odom_i, -factor_.decay / sigma_);
+  if (double* out = jacobian(jacobians, last)) out[0] = (factor_.decay - 1.0) / sigma_;
   return true;
 }
 
-DriftCost::DriftCost(const DriftFactor& factor) : factor_(factor) {
+DriftCost::DriftCost(const DriftFactor& factor, const NoiseScales& noise)
+    : factor_(factor), sigma_(noise.heading * factor.sigma_rad) {
   set_num_residuals(1);
   *mutable_parameter_block_sizes() = {1, 1, 1};
 }
 
 /// r = (wrap(b − a) − rate·dt) / sigma.
 bool DriftCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
-  residuals[0] = (wrap_angle(x[1][0] - x[0][0]) - x[2][0] * factor_.dt_s) / factor_.sigma_rad;
-  if (double* out = jacobian(jacobians, 0)) out[0] = -1.0 / factor_.sigma_rad;
-  if (double* out = jacobian(jacobians, 1)) out[0] = 1.0 / factor_.sigma_rad;
-  if (double* out = jacobian(jacobians, 2)) out[0] = -factor_.dt_s / factor_.sigma_rad;
+  residuals[0] = (wrap_angle(x[1][0] - x[0][0]) - x[2][0] * factor_.dt_s) / sigma_;
+  if (double* out = jacobian(jacobians, 0)) out[0] = -1.0 / sigma_;
+  if (double* out = jacobian(jacobians, 1)) out[0] = 1.0 / sigma_;
+  if (double* out = jacobian(jacobians, 2)) out[0] = -factor_.dt_s / sigma_;
   return true;
 }
 
-ScalarPriorCost::ScalarPriorCost(const ScalarPrior& factor) : factor_(factor) {
+ScalarPriorCost::ScalarPriorCost(const ScalarPrior& factor, const NoiseScales& noise)
+    : factor_(factor), sigma_(noise.heading * factor.sigma) {
   set_num_residuals(1);
   *mutable_parameter_block_sizes() = {1};
 }
 
 /// r = (x − mean) / sigma.
 bool ScalarPriorCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
-  residuals[0] = (x[0][0] - factor_.mean) / factor_.sigma;
-  if (double* out = jacobian(jacobians, 0)) out[0] = 1.0 / factor_.sigma;
+  residuals[0] = (x[0][0] - factor_.mean) / sigma_;
+  if (double* out = jacobian(jacobians, 0)) out[0] = 1.0 / sigma_;
   return true;
 }
 
@@ -181,7 +184,7 @@ bool ContactCost::Evaluate(double const* const* x, double* residuals, double** j
   // Noise at this touching point against that at the expected one, and its relative gradient.
   const double k2 = touch_.fixed ? 0.0 : touch_.turn_noise_rad_per_m * touch_.turn_noise_rad_per_m;
   const double variance = 1.0 + k2 * p_hand.squaredNorm();
-  const double wider = std::sqrt(variance / (1.0 + k2 * touch_.prior.squaredNorm()));
+  const double wider = graph_.noise.contact * std::sqrt(variance / (1.0 + k2 * touch_.prior.squaredNorm()));
   const Vector3d d_wider = k2 / variance * p_hand;
   double slack = 0.0;
   int row = 0;

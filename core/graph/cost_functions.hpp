@@ -14,6 +14,9 @@ namespace kinemap::graph {
 
 using Indices = std::span<const std::uint32_t>;
 
+/// Number of residuals of a contact.
+int rows_of(const ContactFactor& f, LandmarkKind kind);
+
 /// Between factor (poses i, j).
 class BetweenCost final : public ceres::CostFunction {
  public:
@@ -27,31 +30,34 @@ class BetweenCost final : public ceres::CostFunction {
 /// Compass factor (poses i, j, north), or (pose j, north) when i = j.
 class CompassCost final : public ceres::CostFunction {
  public:
-  explicit CompassCost(const CompassFactor& factor);
+  CompassCost(const CompassFactor& factor, const NoiseScales& noise);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const CompassFactor& factor_;
+  double sigma_;
 };
 
 /// Drift factor (scalars a, b, rate).
 class DriftCost final : public ceres::CostFunction {
  public:
-  explicit DriftCost(const DriftFactor& factor);
+  DriftCost(const DriftFactor& factor, const NoiseScales& noise);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const DriftFactor& factor_;
+  double sigma_;
 };
 
 /// Prior on a scalar.
 class ScalarPriorCost final : public ceres::CostFunction {
  public:
-  explicit ScalarPriorCost(const ScalarPrior& factor);
+  ScalarPriorCost(const ScalarPrior& factor, const NoiseScales& noise);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const ScalarPrior& factor_;
+  double sigma_;
 };
 
 /// All factors on one pose alone: gravity, floors, priors.

@@ -137,6 +137,7 @@ struct ContactFactor {
   double sigma_plane_m = 0.02;
   double sigma_edge_m = 0.02;
   double sigma_corner_m = 0.05;
+  double share = 1.0;  ///< contacts that err together count as one; of that one it is so much
   Loss loss;
 };
 
@@ -184,12 +185,20 @@ struct FoldedFactor {
   double weighted_squares = 0.0;     ///< Σ weighted_square() of the contacts
 };
 
+/// Errors of some kinds over what their factors' sigmas say, as core/graph/variance_components.hpp finds them: the
+/// sigmas are multiplied by it.
+struct NoiseScales {
+  double heading = 1.0;  ///< compasses, drifts and the priors of scalars
+  double contact = 1.0;
+};
+
 struct Graph {
   std::vector<Pose> poses;          ///< T_map_i
   std::size_t first_free_pose = 0;  ///< those before are constants: they move no more, and have no covariance
   std::vector<Landmark> landmarks;
   std::vector<TouchPoint> touch_points;
   std::vector<double> scalars;  ///< slow states of the suit: where its norths are (rad), and how fast they turn (rad/s)
+  NoiseScales noise;
 
   std::vector<BetweenFactor> between;
   std::vector<CompassFactor> compasses;

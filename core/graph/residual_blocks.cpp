@@ -100,16 +100,18 @@ void ResidualBlocks::add_pose_factors() {
 
 void ResidualBlocks::add_headings() {
   for (const CompassFactor& f : graph_.compasses) {
-    const CompassCost& cost = compass_costs_.emplace_back(f);
+    const CompassCost& cost = compass_costs_.emplace_back(f, graph_.noise);
     const VariableId i = static_cast<VariableId>(f.i), j = static_cast<VariableId>(f.j);
     if (f.i == f.j)
-      add(cost, {j, scalar_id(f.north)});
+      add(cost, {j, scalar_id(f.north)}, Group::Heading);
     else
-      add(cost, {i, j, scalar_id(f.north)});
+      add(cost, {i, j, scalar_id(f.north)}, Group::Heading);
   }
   for (const DriftFactor& f : graph_.drifts)
-    add(drift_costs_.emplace_back(f), {scalar_id(f.a), scalar_id(f.b), scalar_id(f.rate)});
-  for (const ScalarPrior& f : graph_.scalar_priors) add(scalar_prior_costs_.emplace_back(f), {scalar_id(f.scalar)});
+    add(drift_costs_.emplace_back(f, graph_.noise), {scalar_id(f.a), scalar_id(f.b), scalar_id(f.rate)},
+        Group::Heading);
+  for (const ScalarPrior& f : graph_.scalar_priors)
+    add(scalar_prior_costs_.emplace_back(f, graph_.noise), {scalar_id(f.scalar)}, Group::Heading);
 }
 
 void ResidualBlocks::add_contacts() {
@@ -129,9 +131,9 @@ void ResidualBlocks::add_contacts() {
     const ContactCost& cost = contact_costs_.emplace_back(graph_, Indices(contacts_).subspan(begin, end - begin));
     const VariableId pose = static_cast<VariableId>(f.i);
     if (graph_.touch_points[f.touch].fixed) {
-      add(cost, {pose, landmark_id(f.landmark)});
+      add(cost, {pose, landmark_id(f.landmark)}, Group::Contact);
     } else {
-      add(cost, {pose, landmark_id(f.landmark), touch_id(f.touch)});
+      add(cost, {pose, landmark_id(f.landmark), touch_id(f.touch)}, Group::Contact);
     }
   }
 }
@@ -172,8 +174,8 @@ void ResidualBlocks::add_folded() {
   }
 }
 
-void ResidualBlocks::add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables) {
-  ResidualBlock block{&cost, static_cast<int>(variables.size()), {}, {}};
+void ResidualBlocks::add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables, Group group) {
+  ResidualBlock block{&cost, static_cast<int>(variables.size()), {}, {}, group};
   std::copy(variables.begin(), variables.end(), block.variables.begin());
   const std::size_t poses = values_.poses.size(), landmarks = values_.landmarks.size();
   bool free = false;

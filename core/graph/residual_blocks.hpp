@@ -38,11 +38,15 @@ struct Values {
 /// Numbers all variables of a graph: poses, then landmarks, touching points and scalars.
 using VariableId = std::uint32_t;
 
+/// What a block's factors measure.
+enum class Group : std::uint8_t { Other, Heading, Contact };
+
 struct ResidualBlock {
   const ceres::CostFunction* cost = nullptr;
   int count = 0;  ///< variables used
   std::array<VariableId, 3> variables{};
   std::array<double*, 3> parameters{};
+  Group group = Group::Other;
 };
 
 /// Factor indices grouped by pose: those of pose i are items[start[i] … start[i + 1]).
@@ -74,7 +78,7 @@ class ResidualBlocks {
   void add_landmark_factors();
   void add_touch_priors();
   void add_folded();
-  void add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables);
+  void add(const ceres::CostFunction& cost, std::initializer_list<VariableId> variables, Group group = Group::Other);
   [[nodiscard]] VariableId landmark_id(std::size_t landmark) const;
   [[nodiscard]] VariableId touch_id(std::size_t touch) const;
   [[nodiscard]] VariableId scalar_id(std::size_t scalar) const;

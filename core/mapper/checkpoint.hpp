@@ -11,7 +11,7 @@
 /// and counts kCheckpointVersion up.
 namespace kinemap {
 
-constexpr std::uint32_t kCheckpointVersion = 1;
+constexpr std::uint32_t kCheckpointVersion = 2;
 
 inline void fields(Archive& a, Pose& x) { a(x.p, x.q); }
 
@@ -28,7 +28,8 @@ inline void fields(Archive& a, GravityFactor& x) { a(x.i, x.up, x.sigma_rad); }
 inline void fields(Archive& a, FloorFactor& x) { a(x.i, x.p_i, x.z, x.sigma_m, x.loss); }
 inline void fields(Archive& a, PriorFactor& x) { a(x.i, x.T_map_i, x.sqrt_information); }
 inline void fields(Archive& a, ContactFactor& x) {
-  a(x.i, x.landmark, x.touch, x.T_i_hand, x.edge, x.corner, x.sigma_plane_m, x.sigma_edge_m, x.sigma_corner_m, x.loss);
+  a(x.i, x.landmark, x.touch, x.T_i_hand, x.edge, x.corner, x.sigma_plane_m, x.sigma_edge_m, x.sigma_corner_m, x.share,
+    x.loss);
 }
 inline void fields(Archive& a, SeatFactor& x) {
   a(x.i, x.landmark, x.T_i_seat, x.sigma_level_m, x.sigma_z_m, x.sigma_heading_rad, x.loss);
@@ -38,8 +39,9 @@ inline void fields(Archive& a, LandmarkPrior& x) { a(x.landmark, x.index, x.mean
 inline void fields(Archive& a, FoldedFactor& x) {
   a(x.landmark, x.touch, x.at, x.p_hand, x.quarter_turns, x.sqrt_information, x.residual, x.rest, x.weighted_squares);
 }
+inline void fields(Archive& a, NoiseScales& x) { a(x.heading, x.contact); }
 inline void fields(Archive& a, Graph& x) {
-  a(x.poses, x.first_free_pose, x.landmarks, x.touch_points, x.scalars, x.compasses, x.drifts, x.scalar_priors,
+  a(x.noise, x.poses, x.first_free_pose, x.landmarks, x.touch_points, x.scalars, x.compasses, x.drifts, x.scalar_priors,
     x.between, x.gravity, x.floors, x.priors, x.contacts, x.seats, x.parallels, x.landmark_priors, x.folded);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/mapper/checkpoint.hpp"
 #include "core/mapper/closure.hpp"
+#include "core/mapper/noise.hpp"
 #include "core/mapper/observe.hpp"
 #include "core/mapper/odometry.hpp"
 #include "core/mapper/pose_covariance.hpp"
@@ -97,6 +98,7 @@ class Mapper::Impl {
     if (judge_touch()) closer_.settle(state_, config_.solver.final_iterations);
     closer_.revise(state_, enough);
     if (closer_.reconsider(state_)) closer_.settle(state_, config_.solver.final_iterations);
+    if (!enough || !enough()) noise_ = estimate_noise(state_.graph);
     publish();
   }
 
@@ -124,8 +126,8 @@ class Mapper::Impl {
     return true;
   }
   void fields(Archive& a) {
-    a(wearer_, odometry_, resolver_, closer_, touch_, pelvis_covariance_, touched_, state_, settled_way_, unresolved_,
-      time_s_);
+    a(wearer_, odometry_, resolver_, closer_, touch_, pelvis_covariance_, touched_, state_, noise_, settled_way_,
+      unresolved_, time_s_);
   }
 
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
@@ -184,7 +186,9 @@ class Mapper::Impl {
   void publish() {
     auto map = std::make_shared<MapSnapshot>();
     const auto walls = cut_walls(state_, config_.walls);
-    const auto marginals = graph::Marginals::compute(state_.graph);
+    graph::Graph as_found = state_.graph;
+    as_found.noise = noise_;
+    const auto marginals = graph::Marginals::compute(as_found);
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);
@@ -268,6 +272,7 @@ class Mapper::Impl {
   PoseCovariance pelvis_covariance_;
   bool touched_ = false;  ///< a trace or pivot gesture has been seen
   MapState state_;
+  graph::NoiseScales noise_;                 ///< as last estimated, for what is published
   std::vector<TrajectoryPose> settled_way_;  ///< of the graph's constant poses; the last is odometry's first
   std::vector<UnresolvedTrace> unresolved_;
   double time_s_ = 0.0;

@@ -94,7 +94,7 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
   for (const std::size_t k : kept) {
     const HandContact& contact = trace.contacts[observation.contacts[k]];
     const SideLabel label = observation.labels[k];
-    const double sigma = config.hand.contact_sigma_m * wider[static_cast<std::size_t>(label.edge)];
+    const double factor_of_side = wider[static_cast<std::size_t>(label.edge)];
     ContactFactor factor;
     factor.i = contact.key_pose;
     factor.landmark = landmark;
@@ -102,7 +102,8 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
     factor.T_i_hand = contact.T_key_hand;
     factor.edge = label.edge;
     factor.corner = label.corner;
-    factor.sigma_plane_m = factor.sigma_edge_m = sigma;
+    factor.sigma_plane_m = factor.sigma_edge_m = config.hand.contact_sigma_m * factor_of_side;
+    factor.share = 1.0 / (factor_of_side * factor_of_side);
     factor.sigma_corner_m = config.hand.corner_sigma_m;
     factor.loss = {graph::Loss::Kind::Cauchy, config.hand.loss_scale};
     state.graph.contacts.push_back(factor);

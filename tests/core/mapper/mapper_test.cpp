@@ -121,6 +121,21 @@ TEST(Mapper, TheFirstOfTwoWallsInOneGestureJoinsThePartsTheSecondMovesAlong) {
   EXPECT_LT(rmse(*map, wearer.truth, true), 0.1);
 }
 
+TEST(Mapper, ASuitThatHardlyErrsGetsNarrowerSigmasAtTheEnd) {
+  Wearer exact;
+  for (int round = 0; round < 3; ++round) round_trip(exact);
+  Mapper mapper(config());
+  const auto sigma = [&mapper] {
+    double sum = 0.0;
+    for (const MapObject& o : mapper.snapshot()->objects) sum += o.sigma.heading_rad;
+    return sum;
+  };
+  for (const auto& event : exact.events) mapper.add(event);
+  const double expected = sigma();
+  mapper.finish();
+  EXPECT_LT(sigma(), 0.6 * expected);
+}
+
 TEST(Mapper, TwoEqualTablesSideBySideStayTwo) {
   Wearer wearer(0.0012);
   for (int round = 0; round < 3; ++round) {

@@ -144,7 +144,9 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
     MapState trial = state;
     const std::size_t alone = split(trial, v);
     if (!optimise(trial, config_.solver.closure_iterations)) continue;
-    const double relief = 2.0 * (graph::cost(state.graph) - trial.summary.last_cost);
+    const double most = config_.association.free_space_most;
+    const double relief = 2.0 * (graph::cost(state.graph) - trial.summary.last_cost) +
+                          free_space_cost(state, nullptr, most) - free_space_cost(trial, nullptr, most);
     if (relief < config_.association.min_relief) continue;
     contradicted_.push_back(ordered(alone, state.observations[v].landmark));
     state = std::move(trial);

@@ -172,5 +172,21 @@ TEST(FreeSpace, TellsWhichOfTwoItIs) {
   }
 }
 
+TEST(FreeSpace, TakesBackAClosureThatLedTheWayThroughATable) {
+  MapperConfig config;
+  for (const bool used : {false, true}) {
+    config.association.free_space_most = used ? kMost : 0.0;
+    Scene s({0, 0});
+    s.walk_to(0, 1.6).seat(1.0);
+    s.rectangle(LandmarkKind::Table, -1.5, 1.6, 0.74, 0.0, 1.2, 1.2).walk_to(0, 3).walk_to(-3, 3);
+    s.walk_to(-3, 0.6, 0.6).walk_to(3, 0.6).walk_to(-3, 0.6).walk_to(0, 0.6);
+    merge(s.state, s.seat(1.0), {0, 0, 0.0, 4, 0.0});  // which is 1 m away
+    LoopCloser closer(config);
+    ASSERT_TRUE(closer.settle(s.state, 30));
+    EXPECT_EQ(closer.revise(s.state), used);
+    EXPECT_EQ(s.state.observations.front().landmark == s.state.observations.back().landmark, !used);
+  }
+}
+
 }  // namespace
 }  // namespace kinemap

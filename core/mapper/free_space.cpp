@@ -20,6 +20,7 @@ using graph::LandmarkKind;
 constexpr double kInset = 0.1;        // m: extents err, hands come from the side, bodies bend over edges ...
 constexpr double kSigma = 0.12;       // m: ... and so much beyond it
 constexpr double kDoorway = 0.5;      // m: a gap between contacts that one may have walked through
+constexpr double kStorey = 1.8;       // m: a pelvis is less than this above the floor that its body is on
 constexpr double kSameHeight = 0.3;   // m: of tables that exclude each other
 constexpr std::size_t kOneTime = 20;  // key poses: intrusions closer to each other have one cause
 constexpr double kCertain = 26.0;     // beyond so many sigmas erfc() is 0
@@ -32,12 +33,17 @@ struct Solid {
   double half_u = 0.0;
   double half_v = 0.0;  ///< 0: a line
   double z = 0.0;
+  double floor_z = 0.0;
   std::vector<std::size_t> visits = {};  ///< poses from which it was touched, at least one
 
   /// Where p is, from the centre along u and v.
   [[nodiscard]] Eigen::Vector2d within(const Eigen::Vector3d& p) const {
     const Eigen::Vector2d d = p.head<2>() - centre;
     return {u.dot(d), v.dot(d)};
+  }
+  /// Whether a body whose pelvis is at p is on the floor that it stands on.
+  [[nodiscard]] bool on_its_floor(const Eigen::Vector3d& p) const {
+    return p.z() > floor_z && p.z() < floor_z + kStorey;
   }
   [[nodiscard]] double half(const Eigen::Vector2d& axis) const {
     return half_u * std::abs(u.dot(axis)) + half_v * std::abs(v.dot(axis));
@@ -93,9 +99,11 @@ std::vector<Solid> solids(const MapState& state) {
     if (landmark.kind != LandmarkKind::Table && landmark.kind != LandmarkKind::Screen) continue;
     if (const auto s = rectangle(state, k)) out.push_back(*s);
   }
-  for (Solid& s : out)
+  for (Solid& s : out) {
+    s.floor_z = state.landmarks[s.landmark].floor_z;
     for (const auto& visit : state.observations)
       if (visit.landmark == s.landmark) s.visits.push_back(visit.key_pose);
+  }
   std::erase_if(out, [](const Solid& s) { return s.visits.empty(); });
   return out;
 }
@@ -105,7 +113,7 @@ std::vector<Intrusion> walked_through_rectangle(const std::vector<Pose>& poses, 
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Eigen::Vector2d at = s.within(poses[k].p).cwiseAbs();
     const double u = s.half_u - at.x(), v = s.half_v - at.y();
-    if (std::min(u, v) > 0.0) found.push_back({k, k, u < v ? s.u : s.v, std::min(u, v)});
+    if (std::min(u, v) > 0.0 && s.on_its_floor(poses[k].p)) found.push_back({k, k, u < v ? s.u : s.v, std::min(u, v)});
   }
   return found;
 }
@@ -127,7 +135,8 @@ std::vector<Intrusion> walked_through_line(const std::vector<Pose>& poses, const
       close();
       const double u = before.x() + (at.x() - before.x()) * before.y() / (before.y() - at.y());
       const double to_end = s.half_u - std::abs(u);
-      if (to_end > 0.0) open = to_end < reach ? Intrusion{k, k, s.u, to_end} : Intrusion{k, k, s.v, reach};
+      if (to_end > 0.0 && s.on_its_floor(poses[k].p))
+        open = to_end < reach ? Intrusion{k, k, s.u, to_end} : Intrusion{k, k, s.v, reach};
       reach = 0.0;
     }
     reach = std::max(reach, std::abs(at.y()));
@@ -149,7 +158,7 @@ std::vector<Intrusion> deepest(const std::vector<Intrusion>& found) {
 }
 
 bool exclude_each_other(const Solid& a, const Solid& b) {
-  if (a.landmark == b.landmark) return false;
+  if (a.landmark == b.landmark || std::abs(a.floor_z - b.floor_z) > kStorey) return false;
   if (a.kind == LandmarkKind::Wall || b.kind == LandmarkKind::Wall) return true;
   return a.kind == LandmarkKind::Table && b.kind == LandmarkKind::Table && std::abs(a.z - b.z) < kSameHeight;
 }

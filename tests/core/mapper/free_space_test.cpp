@@ -150,6 +150,18 @@ TEST(FreeSpace, ThingsExcludeEachOther) {
   EXPECT_GT(Scene({0, -3}).rectangle(LandmarkKind::Table, 0.8, 0, 0.74, 0, 1.4, 0.8).wall(0, 0, 1.6, 2, 3).cost(), 4.0);
 }
 
+TEST(FreeSpace, WhatIsOnAnotherFloorIsNotInTheWay) {
+  Scene s({0, 0});
+  s.rectangle(LandmarkKind::Table, 2, 0, 3.74, 0.3, 1.4, 1.2).state.landmarks.back().floor_z = 3.0;
+  EXPECT_EQ(s.walk_to(4, 0).cost(), 0.0) << "walked below it";
+  s.wall(1.5, 1.0, 1.6, 1.7, 3.0).state.landmarks.back().floor_z = 0.0;
+  EXPECT_EQ(s.walk_to(4, 1).cost(), 0.0);
+  s.rectangle(LandmarkKind::Table, 2, 1.5, 3.74, 0.0, 1.4, 1.2).state.landmarks.back().floor_z = 3.0;
+  EXPECT_EQ(s.cost(), 0.0) << "a wall below it";
+  s.state.landmarks.back().floor_z = 0.0;
+  EXPECT_GT(s.cost(), 0.0);
+}
+
 /// A seat that may be either of two that look the same; if it were the second, the way to it had led through a table.
 MapState between_two_seats() {
   Scene s({0, 0});

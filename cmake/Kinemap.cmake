@@ -20,6 +20,13 @@ if(KINEMAP_SANITIZE)
   endif()
 endif()
 
+# What is tested is what ships: Debian's hardening=+all, and no path of this machine in a binary (tests/hardening).
+if(CMAKE_BUILD_TYPE STREQUAL "Release")
+  add_compile_options(-fPIE -fstack-protector-strong -D_FORTIFY_SOURCE=2 -Wformat -Werror=format-security
+    -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
+  add_link_options(-pie LINKER:-z,relro,-z,now)
+endif()
+
 # For libFuzzer (clang only): everything tells it which ways were taken; tests/fuzz.
 option(KINEMAP_FUZZ "Have libFuzzer drive the fuzz targets" OFF)
 if(KINEMAP_FUZZ)

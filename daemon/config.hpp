@@ -26,6 +26,9 @@ struct Config {
   AssemblerConfig stream;
   TrackerConfig tracker;
   MapperConfig mapper;
+  struct Detection {
+    int realtime_priority = 0;  ///< of the thread that the tracker runs in: SCHED_FIFO; 0: scheduled as all others
+  } detection;
   struct Api {
     std::string address = "127.0.0.1";
     std::uint16_t port = 8765;

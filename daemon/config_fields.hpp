@@ -289,6 +289,11 @@ void fields(V& v, MapperConfig& c) {
 }
 
 template <class V>
+void fields(V& v, Config::Detection& c) {
+  v.number("realtime_priority", c.realtime_priority, Range{"1", 0, 99});
+}
+
+template <class V>
 void fields(V& v, Config::Api& c) {
   v.address("address", c.address);
   v.number("port", c.port, Range{"port", 0, 65535});
@@ -327,6 +332,7 @@ void fields(V& v, Config& c) {
   v.section("stream", c.stream);
   v.section("tracker", c.tracker);
   v.section("mapper", c.mapper);
+  v.section("detection", c.detection);
   v.section("api", c.api);
   v.section("journal", c.journal);
   v.section("log", c.log);

@@ -34,7 +34,8 @@ class Daemon {
 
  private:
   Daemon(const Config& config, std::unique_ptr<SessionJournal> journal)
-      : config_(config), pipeline_(config.tracker, config.mapper, {}, std::move(journal)) {}
+      : config_(config),
+        pipeline_(config.tracker, config.mapper, {}, std::move(journal), config.detection.realtime_priority) {}
   [[nodiscard]] SuitSink suit_sink();
   [[nodiscard]] Sources sources();
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/reach.hpp"
+#include "daemon/realtime.hpp"
 #include "protocol/journal_map.hpp"
 
 namespace kinemap {
@@ -33,7 +34,7 @@ std::vector<journal::Entry> stored_entries(SessionJournal* journal) {
 }  // namespace
 
 Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes,
-                   std::unique_ptr<SessionJournal> journal)
+                   std::unique_ptr<SessionJournal> journal, int realtime_priority)
     : frames_(sizes.frames),
       unwritten_(sizes.events),
       events_(sizes.events),
@@ -46,7 +47,8 @@ Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, con
       tracker_(tracker),
       resume_(resume_point(stored_)),
       mapper_(mapper),
-      checkpoints_(journal_.get(), mapper) {
+      checkpoints_(journal_.get(), mapper),
+      realtime_priority_(realtime_priority) {
   map_.set(mapper_.snapshot());
   solver_ = std::jthread([this](const std::stop_token& stop) { solve(stop); });
   pthread_setname_np(solver_.native_handle(), "solver");
@@ -56,6 +58,9 @@ Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, con
   }
   detection_ = std::jthread([this](const std::stop_token& stop) { detect(stop); });
   pthread_setname_np(detection_.native_handle(), "detection");
+  if (realtime_priority_ == 0) return;
+  realtime_refusal_ = set_realtime(detection_.native_handle(), realtime_priority_);
+  if (!realtime_refusal_.empty()) spdlog::warn("detection.realtime_priority: {}", realtime_refusal_);
 }
 
 Pipeline::~Pipeline() {
@@ -115,7 +120,9 @@ PipelineStats Pipeline::stats() const {
           entries_restored_.load(std::memory_order_relaxed),
           entries_to_restore_,
           recorder != nullptr,
-          recorder != nullptr ? recorder->stats() : RecorderStats{}};
+          recorder != nullptr ? recorder->stats() : RecorderStats{},
+          realtime_priority_,
+          realtime_refusal_};
 }
 
 void Pipeline::detect(const std::stop_token& stop) {

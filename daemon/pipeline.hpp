@@ -60,6 +60,8 @@ struct PipelineStats {
   std::uint64_t entries_to_restore = 0;  ///< so many it has
   bool has_recorder = false;
   RecorderStats recorder;
+  int realtime_priority = 0;     ///< asked for the detection thread; 0: none
+  std::string realtime_refusal;  ///< why it is not in force; empty where it is
 };
 
 struct RingSizes {
@@ -84,8 +86,9 @@ class Pipeline {
  public:
   /// With a journal, the session that it holds is mapped again first; it goes on when the suit's stream turns out to be
   /// the same, and gives way to a new one with the first frame of another.
+  /// `realtime_priority`: of the detection thread, 1 to 99; 0: none. A refusal is logged and told by stats().
   Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, const RingSizes& sizes = {},
-           std::unique_ptr<SessionJournal> journal = nullptr);
+           std::unique_ptr<SessionJournal> journal = nullptr, int realtime_priority = 0);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -195,6 +198,9 @@ class Pipeline {
   std::uint64_t sessions_begun_ = 0;  // solver thread only
   Mapper mapper_;                     // solver thread only
   Checkpoints checkpoints_;           // solver thread only
+
+  const int realtime_priority_;
+  std::string realtime_refusal_;  // written by the constructor only
   std::jthread solver_, recorder_, detection_;
 };
 

@@ -75,6 +75,13 @@ Json tracker_json(const TrackerStats& t) {
           {"path_m", rounded(t.path_m)}};
 }
 
+/// Nothing where no real-time priority is asked for.
+Json detection_json(const PipelineStats& p) {
+  Json json = {{"realtime_priority", p.realtime_priority}, {"in_force", p.realtime_refusal.empty()}};
+  if (!p.realtime_refusal.empty()) json["refusal"] = p.realtime_refusal;
+  return json;
+}
+
 Json ring_json(const RingStats& ring) {
   return {{"capacity", ring.capacity}, {"fill", ring.fill}, {"dropped", ring.refused}};
 }
@@ -189,6 +196,7 @@ std::string status_text(const Status& status) {
              {"clients", api_json(status.api)},
              {"process", process_json()}});
   if (status.pipeline.has_journal) json["journal"] = journal_json(status.pipeline);
+  if (status.pipeline.realtime_priority > 0) json["detection"] = detection_json(status.pipeline);
   if (status.pipeline.has_recorder) json["recording"] = recording_json(status.pipeline.recorder);
   return compact_text(json);
 }

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "daemon/latest.hpp"
+#include "daemon/realtime.hpp"
 #include "daemon/ring.hpp"
 #include "protocol/assembler.hpp"
 #include "tests/daemon/support.hpp"
@@ -36,6 +45,52 @@ TEST(Pipeline, TellsTheWatchdogThatTheSolverGoesOn) {
     return stats.tracker.frames == 600 && stats.solver.messages > 0 && !pipeline.solver_progress().has_work &&
            pipeline.solver_progress().steps == pipeline.stats().solver.messages;
   }));
+}
+
+/// Empty, or why no thread can have it here.
+std::string realtime_refused_here(int priority) {
+  std::string refusal;
+  std::jthread([&] { refusal = set_realtime(::pthread_self(), priority); }).join();
+  return refusal;
+}
+
+/// How the thread of this name is scheduled: policy and priority.
+std::pair<int, int> scheduling_of(const std::string& name) {
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string comm;
+    std::getline(std::ifstream(task.path() / "comm"), comm);
+    if (comm != name) continue;
+    const auto id = static_cast<pid_t>(std::stol(task.path().filename().string()));
+    sched_param param{};
+    ::sched_getparam(id, &param);
+    return {::sched_getscheduler(id), param.sched_priority};
+  }
+  return {-1, -1};
+}
+
+TEST(Pipeline, DetectionAloneGetsRealtimePriorityWhereItIsAskedFor) {
+  if (const auto refusal = realtime_refused_here(7); !refusal.empty()) GTEST_SKIP() << refusal;
+  const Pipeline pipeline{TrackerConfig{}, MapperConfig{}, {}, nullptr, 7};
+  EXPECT_EQ(scheduling_of("detection"), std::pair(SCHED_FIFO, 7));
+  EXPECT_EQ(scheduling_of("solver"), std::pair(SCHED_OTHER, 0));
+  EXPECT_EQ(pipeline.stats().realtime_priority, 7);
+  EXPECT_EQ(pipeline.stats().realtime_refusal, "");
+}
+
+TEST(Pipeline, SaysWhyRealtimePriorityIsRefusedAndGoesOn) {
+  // Of this thread and those that it starts, not of the process: nobody, who may not have it.
+  std::jthread([] {
+    const rlimit none{0, 0};
+    ASSERT_EQ(::setrlimit(RLIMIT_RTPRIO, &none), 0);
+    if (::geteuid() == 0) {
+      ASSERT_EQ(::syscall(SYS_setresuid, 65534, 65534, 65534), 0);
+    }
+    Pipeline pipeline{TrackerConfig{}, MapperConfig{}, {}, nullptr, 7};
+    EXPECT_EQ(scheduling_of("detection"), std::pair(SCHED_OTHER, 0));
+    EXPECT_THAT(pipeline.stats().realtime_refusal, testing::HasSubstr("LimitRTPRIO=7"));
+    for (const auto& frame : glider_frames(60)) pipeline.offer(frame);
+    EXPECT_TRUE(eventually([&] { return pipeline.stats().tracker.frames == 60; }));
+  }).join();
 }
 
 TEST(Ring, RefusesAndCountsWhenFull) {

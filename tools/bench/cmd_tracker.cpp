@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <pthread.h>
+
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -6,6 +9,7 @@
 
 #include "core/mapper/mapper.hpp"
 #include "core/tracker/tracker.hpp"
+#include "daemon/realtime.hpp"
 #include "protocol/json_text.hpp"
 #include "protocol/recording.hpp"
 #include "tools/bench/commands.hpp"
@@ -18,12 +22,15 @@ namespace kinemap::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr int kTurns = 4;
 
 struct Options {
   std::string recording;
   double seconds = 60.0;
   double rate_hz = 120.0;
   bool idle = false;
+  int load = 0;      ///< threads that never rest
+  int realtime = 0;  ///< every other turn with this real-time priority; 0: none
   bool json = false;
 };
 
@@ -69,12 +76,25 @@ struct Latencies {
   std::vector<double> late_us;  ///< how late it began: the scheduler's part
 };
 
-/// Steps at the suit's pace; the recording begins anew when it ends.
-Latencies measure(const std::vector<SuitFrame>& frames, const Options& options) {
-  const auto steps = static_cast<std::size_t>(options.seconds * options.rate_hz);
-  Latencies result;
-  result.step_us.reserve(steps);
-  result.late_us.reserve(steps);
+/// Threads that never rest.
+class Load {
+ public:
+  explicit Load(int threads) {
+    for (int i = 0; i < threads; ++i)
+      threads_.emplace_back([](const std::stop_token& stop) {
+        while (!stop.stop_requested()) continue;
+      });
+  }
+
+ private:
+  std::vector<std::jthread> threads_;
+};
+
+/// Steps at the suit's pace for one turn; the recording begins anew when it ends.
+void measure(const std::vector<SuitFrame>& frames, const Options& options, Latencies& result) {
+  const auto steps = static_cast<std::size_t>(options.seconds / kTurns * options.rate_hz);
+  result.step_us.reserve(kTurns * steps);
+  result.late_us.reserve(kTurns * steps);
   Tracker tracker{TrackerConfig{}};
   std::vector<Event> events;
   events.reserve(64);
@@ -94,6 +114,23 @@ Latencies measure(const std::vector<SuitFrame>& frames, const Options& options) 
     events.clear();
     bar.update(static_cast<double>(i) / static_cast<double>(steps));
   }
+}
+
+/// In turns, so that what else the machine does falls on both alike: without and, if asked for, with real-time
+/// priority.
+Result<std::array<Latencies, 2>> measure_in_turns(const std::vector<SuitFrame>& frames, const Options& options) {
+  std::array<Latencies, 2> result;
+  std::string refusal;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    for (const bool realtime : {false, true}) {
+      if (realtime && options.realtime == 0) continue;
+      std::jthread([&, realtime] {
+        if (realtime) refusal = set_realtime(::pthread_self(), options.realtime);
+        measure(frames, options, result[realtime]);
+      }).join();
+    }
+    if (!refusal.empty()) return Error{refusal};
+  }
   return result;
 }
 
@@ -105,25 +142,34 @@ int tracker(const Options& options) {
   if (!frames) return cli::fail("tracker", frames.error());
   std::optional<BusySolver> solver;
   if (!options.idle) solver.emplace(*frames);
-  Latencies latencies = measure(*frames, options);
+  std::optional<Load> load(std::in_place, options.load);
+  auto latencies = measure_in_turns(*frames, options);
+  load.reset();
   const std::size_t optimisations = solver ? solver->optimisations() : 0;
   solver.reset();
 
+  if (!latencies) return cli::fail("tracker", latencies.error());
+
   const std::pair<const char*, double> ranks[] = {{"50", 0.5}, {"99", 0.99}, {"99.9", 0.999}, {"100", 1.0}};
-  nlohmann::ordered_json json = {{"scenario", scenario->name},
-                                 {"rate_hz", options.rate_hz},
-                                 {"steps", latencies.step_us.size()},
-                                 {"solver_busy", !options.idle},
-                                 {"optimisations_meanwhile", optimisations}};
-  std::string text =
-      format("%s; %zu steps at %.0f Hz, %s\n\n| percentile | step µs | begun late by µs |\n|---|---|---|\n",
-             scenario->name.c_str(), latencies.step_us.size(), options.rate_hz,
-             options.idle ? "no solver" : format("the solver made %zu optimisations meanwhile", optimisations).c_str());
-  for (const auto& [name, part] : ranks) {
-    const double step = percentile(latencies.step_us, part), late = percentile(latencies.late_us, part);
-    text += format("| %s | %.1f | %.1f |\n", name, step, late);
-    json["step_us"][name] = step;
-    json["late_us"][name] = late;
+  nlohmann::ordered_json json = {
+      {"scenario", scenario->name},   {"rate_hz", options.rate_hz},   {"steps", (*latencies)[0].step_us.size()},
+      {"solver_busy", !options.idle}, {"load_threads", options.load}, {"optimisations_meanwhile", optimisations}};
+  std::string text = format(
+      "%s; %zu steps at %.0f Hz, %s, %d busy threads\n\n| priority | percentile | step µs | begun late by µs "
+      "|\n|---|---|---|---|\n",
+      scenario->name.c_str(), (*latencies)[0].step_us.size(), options.rate_hz,
+      options.idle ? "no solver" : format("the solver made %zu optimisations meanwhile", optimisations).c_str(),
+      options.load);
+  for (const bool realtime : {false, true}) {
+    auto& [step_us, late_us] = (*latencies)[realtime];
+    if (step_us.empty()) continue;
+    const std::string priority = realtime ? "real-time " + std::to_string(options.realtime) : "ordinary";
+    for (const auto& [name, part] : ranks) {
+      const double step = percentile(step_us, part), late = percentile(late_us, part);
+      text += format("| %s | %s | %.1f | %.1f |\n", priority.c_str(), name, step, late);
+      json[priority]["step_us"][name] = step;
+      json[priority]["late_us"][name] = late;
+    }
   }
   return cli::print("tracker", options.json ? pretty_text(json) : text);
 }
@@ -134,8 +180,9 @@ void add_tracker(CLI::App& app, cli::Run& run) {
   auto options = std::make_shared<Options>();
   CLI::App* command = cli::add_command(
       app, run, "tracker", "Latency of a tracker step at the suit's rate while the solver runs in another thread",
-      "  bench tracker\n  bench tracker --seconds 300\n  bench tracker --idle       without the solver\n", options,
-      tracker);
+      "  bench tracker\n  bench tracker --seconds 300\n  bench tracker --idle       without the solver\n  bench "
+      "tracker --load 4 --realtime 10\n",
+      options, tracker);
   command->add_option("--recording", options->recording, "Default: a simulated session of about six minutes")
       ->type_name("FILE");
   command->add_option("--seconds", options->seconds, "How long")
@@ -144,6 +191,11 @@ void add_tracker(CLI::App& app, cli::Run& run) {
   command->add_option("--rate", options->rate_hz, "Steps a second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 10000.0));
+  command->add_option("--load", options->load, "So many more threads that never rest")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  command->add_option("--realtime", options->realtime, "Every other turn with this real-time priority (SCHED_FIFO)")
+      ->check(CLI::Range(1, 99));
   command->add_flag("--idle", options->idle, "Leave the solver out");
   command->add_flag("--json", options->json, "Print the figures as JSON");
 }

@@ -137,6 +137,8 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
 
 bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
   bool any = false;
+  const double most = config_.association.free_space_most;
+  double merged = free_space_cost(state, nullptr, most);
   for (std::size_t v = 0; v < state.observations.size(); ++v) {
     if (enough && enough()) break;
     if (state.observations[v].key_pose < state.graph.first_free_pose) continue;  // settled
@@ -144,12 +146,12 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
     MapState trial = state;
     const std::size_t alone = split(trial, v);
     if (!optimise(trial, config_.solver.closure_iterations)) continue;
-    const double most = config_.association.free_space_most;
-    const double relief = 2.0 * (graph::cost(state.graph) - trial.summary.last_cost) +
-                          free_space_cost(state, nullptr, most) - free_space_cost(trial, nullptr, most);
+    double relief = merged + 2.0 * (graph::cost(state.graph) - trial.summary.last_cost);
+    if (relief >= config_.association.min_relief) relief -= free_space_cost(trial, nullptr, most);
     if (relief < config_.association.min_relief) continue;
     contradicted_.push_back(ordered(alone, state.observations[v].landmark));
     state = std::move(trial);
+    merged = free_space_cost(state, nullptr, most);
     state.landmarks[alone].id = next_id_++;
     ++state.summary.loop_closures_revoked;
     any = true;

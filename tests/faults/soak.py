@@ -28,7 +28,9 @@ SAMPLES = 10  # of which the median counts
 
 
 class Client(threading.Thread):
-    """Subscribes to all topics and reads whatever comes."""
+    """Subscribes to all topics, reads whatever comes and says now and then that it is there (an unsolicited pong, RFC 6455 5.5.3)."""
+
+    ALIVE_EVERY_S = 5.0
 
     def __init__(self, port):
         super().__init__(daemon=True)
@@ -46,8 +48,12 @@ class Client(threading.Thread):
         self.start()
 
     def run(self):
+        said = time.monotonic()
         while data := self.socket.recv(1 << 16):
             self.bytes += len(data)
+            if time.monotonic() - said > self.ALIVE_EVERY_S:
+                self.socket.sendall(bytes([0x8A, 0x80, 0, 0, 0, 0]))
+                said = time.monotonic()
         self.ended = True
 
 
@@ -86,18 +92,18 @@ def judge(samples, clients):
     if len(settled) < 2 or settled[-1]["solved_s"] - settled[0]["solved_s"] < SETTLED_S / 4:
         print("too short to judge memory: the first hour of stream is left out")
         return problems
-    first = settled[0]
-    # A single sample may catch the solver in the middle of an optimisation, with all that it takes for it.
+    # A single sample may catch the solver in the middle of an optimisation, with all that it takes for it, or a checkpoint being written.
     ends = [settled[:SAMPLES], settled[-SAMPLES:]]
+    handles = [statistics.median(s["handles"] for s in end) for end in ends]
     rss = [statistics.median(s["rss_mb"] for s in end) for end in ends]
     at = [statistics.median(s["solved_s"] for s in end) / 3600.0 for end in ends]
     growth = (rss[1] / rss[0] - 1.0) / max(0.1, at[1] - at[0])
     print(f"memory {rss[0]:.1f} MB after {at[0]:.2f} h, {rss[1]:.1f} MB after {at[1]:.2f} h: {100 * growth:.1f} % an hour")
-    print(f"handles {first['handles']} to {last['handles']}; landmarks {first['landmarks']} to {last['landmarks']}")
+    print(f"handles {handles[0]:g} to {handles[1]:g}; landmarks {settled[0]['landmarks']} to {last['landmarks']}")
     if growth > GROWTH_PER_HOUR:
         problems.append(f"memory grows by {100 * growth:.1f} % an hour")
-    if last["handles"] > first["handles"]:
-        problems.append(f"file handles grew from {first['handles']} to {last['handles']}")
+    if handles[1] > handles[0]:
+        problems.append(f"file handles grew from {handles[0]:g} to {handles[1]:g}")
     return problems
 
 

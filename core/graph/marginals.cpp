@@ -1,37 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/graph/marginals.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cassert>
 
-#include "core/graph/check.hpp"
 #include "core/graph/normal_equations.hpp"
 
 namespace kinemap::graph {
-namespace {
-
-using Cholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
-/// A pivot this small against its diagonal entry is rounding: the variable is not determined.
-constexpr double kSingularPivot = 1e-12;
-
-bool regular(const Eigen::SparseMatrix<double>& L, const Eigen::SparseMatrix<double>& A) {
-  for (int j = 0; j < L.cols(); ++j) {
-    const double pivot = L.valuePtr()[L.outerIndexPtr()[j]];
-    if (!(pivot * pivot > kSingularPivot * A.coeff(j, j))) return false;
-  }
-  return true;
-}
-
-}  // namespace
 
 /// A = LLᵀ in the permuted order. Σ of some columns E is EᵀA⁻¹E = YᵀY with LY = E, and a unit vector's forward solve
 /// only touches its path to the root of the elimination tree: a query costs far less than one full back-substitution.
 class Marginals::Impl {
  public:
-  Impl(NormalEquations equations, std::size_t poses, std::size_t landmarks, Eigen::SparseMatrix<double> L)
-      : columns_(std::move(equations.columns)), poses_(poses), landmarks_(landmarks), L_(std::move(L)) {}
+  Impl(Factorisation found, std::size_t poses, std::size_t landmarks)
+      : columns_(std::move(found.columns)), poses_(poses), landmarks_(landmarks), L_(std::move(found.L)) {}
 
   [[nodiscard]] Eigen::MatrixXd joint(std::span<const Variable> variables) const {
     std::vector<int> wanted;  // scalar columns, stacked
@@ -89,15 +71,9 @@ class Marginals::Impl {
 };
 
 std::optional<Marginals> Marginals::compute(const Graph& graph) {
-  if (find_fault(graph)) return std::nullopt;
-  std::optional<NormalEquations> equations = assemble_normal_equations(graph);
-  if (!equations) return std::nullopt;
-  Cholesky cholesky(equations->lower);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
-  Eigen::SparseMatrix<double> L = cholesky.matrixL();
-  if (!regular(L, equations->lower)) return std::nullopt;
-  return Marginals(
-      std::make_unique<Impl>(std::move(*equations), graph.poses.size(), graph.landmarks.size(), std::move(L)));
+  std::optional<Factorisation> found = factorise(graph);
+  if (!found) return std::nullopt;
+  return Marginals(std::make_unique<Impl>(std::move(*found), graph.poses.size(), graph.landmarks.size()));
 }
 
 Eigen::MatrixXd Marginals::joint(std::span<const Variable> variables) const { return impl_->joint(variables); }

@@ -2,10 +2,12 @@
 #include "core/graph/normal_equations.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <numeric>
 
+#include "core/graph/check.hpp"
 #include "core/graph/linearised.hpp"
 
 namespace kinemap::graph {
@@ -141,6 +143,19 @@ Eigen::SparseMatrix<double> BlockPattern::allocate() {
   return m;
 }
 
+using Cholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
+
+/// A pivot this small against its diagonal entry is rounding: the variable is not determined.
+constexpr double kSingularPivot = 1e-12;
+
+bool regular(const Eigen::SparseMatrix<double>& L, const Eigen::SparseMatrix<double>& A) {
+  for (int j = 0; j < L.cols(); ++j) {
+    const double pivot = L.valuePtr()[L.outerIndexPtr()[j]];
+    if (!(pivot * pivot > kSingularPivot * A.coeff(j, j))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
@@ -175,6 +190,17 @@ std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
       }
     }
   }
+  return out;
+}
+
+std::optional<Factorisation> factorise(const Graph& graph) {
+  if (find_fault(graph)) return std::nullopt;
+  std::optional<NormalEquations> equations = assemble_normal_equations(graph);
+  if (!equations) return std::nullopt;
+  const Cholesky cholesky(equations->lower);
+  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  Factorisation out{std::move(equations->columns), cholesky.matrixL()};
+  if (!regular(out.L, equations->lower)) return std::nullopt;
   return out;
 }
 

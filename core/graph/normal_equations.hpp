@@ -26,4 +26,13 @@ struct NormalEquations {
 /// nullopt when a variable has no factor at all or a factor cannot be evaluated. `graph` without fault (see check.hpp).
 std::optional<NormalEquations> assemble_normal_equations(const Graph& graph);
 
+/// P·JᵀJ·Pᵀ = L·Lᵀ.
+struct Factorisation {
+  std::vector<ColumnRange> columns;  ///< as of NormalEquations
+  Eigen::SparseMatrix<double> L;
+};
+
+/// nullopt when the graph has a fault or the system is singular (a variable without factors, no gauge).
+std::optional<Factorisation> factorise(const Graph& graph);
+
 }  // namespace kinemap::graph

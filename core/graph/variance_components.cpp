@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/graph/variance_components.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <cstdint>
 
-#include "core/graph/check.hpp"
 #include "core/graph/linearised.hpp"
 #include "core/graph/normal_equations.hpp"
 
 namespace kinemap::graph {
 namespace {
-
-using Cholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
 constexpr int kProbes = 16;  // vectors of random signs per group
 
@@ -25,15 +21,15 @@ std::uint64_t signs(std::uint64_t row) {
 /// Jᵀz for each probe z, and r² of the rows: with LLᵀ = JᵀJ the trace of J Σ Jᵀ is E‖L⁻¹Jᵀz‖².
 class Probes {
  public:
-  explicit Probes(const NormalEquations& equations)
-      : columns_(equations.columns), Jtz_(Eigen::MatrixXd::Zero(equations.lower.cols(), kProbes)) {}
+  explicit Probes(const Factorisation& system)
+      : system_(system), Jtz_(Eigen::MatrixXd::Zero(system.L.cols(), kProbes)) {}
 
   void add(const ResidualBlock& block, const Linearised& linearised) {
     for (Eigen::Index row = 0; row < linearised.residuals().size(); ++row) {
       const std::uint64_t bits = signs(++rows_ * 0x9e3779b97f4a7c15);
       bool changes = false;  // nothing changes the last row of a block with a loss
       for (int k = 0; k < block.count; ++k) {
-        const ColumnRange& range = columns_[block.variables[static_cast<std::size_t>(k)]];
+        const ColumnRange& range = system_.columns[block.variables[static_cast<std::size_t>(k)]];
         const auto J = linearised.jacobian(k, range.size).row(row);
         if (J.isZero(0.0)) continue;
         changes = true;
@@ -47,12 +43,12 @@ class Probes {
   }
   [[nodiscard]] double squares() const { return squares_; }
   [[nodiscard]] double n() const { return n_; }
-  [[nodiscard]] double trace(const Cholesky& cholesky) const {
-    return cholesky.matrixL().solve(Jtz_).squaredNorm() / kProbes;
+  [[nodiscard]] double trace() const {
+    return system_.L.triangularView<Eigen::Lower>().solve(Jtz_).squaredNorm() / kProbes;
   }
 
  private:
-  const std::vector<ColumnRange>& columns_;
+  const Factorisation& system_;
   Eigen::MatrixXd Jtz_;
   std::uint64_t rows_ = 0;
   double squares_ = 0.0, n_ = 0.0;
@@ -68,15 +64,12 @@ double independent_rows(const Graph& graph) {
 }  // namespace
 
 std::optional<VarianceComponents> variance_components(const Graph& graph) {
-  if (find_fault(graph)) return std::nullopt;
-  const std::optional<NormalEquations> equations = assemble_normal_equations(graph);
-  if (!equations) return std::nullopt;
-  const Cholesky cholesky(equations->lower);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  const std::optional<Factorisation> system = factorise(graph);
+  if (!system) return std::nullopt;
 
   Values values(graph);
   const ResidualBlocks problem(graph, values, graph.first_free_pose);
-  Probes headings(*equations), contacts(*equations);
+  Probes headings(*system), contacts(*system);
   Linearised linearised;
   for (const ResidualBlock& block : problem.blocks) {
     if (block.group == Group::Other) continue;
@@ -84,8 +77,8 @@ std::optional<VarianceComponents> variance_components(const Graph& graph) {
     (block.group == Group::Heading ? headings : contacts).add(block, linearised);
   }
   VarianceComponents out;
-  out.heading = {headings.squares(), headings.n() - headings.trace(cholesky)};
-  out.contact = {contacts.squares(), independent_rows(graph) - contacts.trace(cholesky)};
+  out.heading = {headings.squares(), headings.n() - headings.trace()};
+  out.contact = {contacts.squares(), independent_rows(graph) - contacts.trace()};
   return out;
 }
 

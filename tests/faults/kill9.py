@@ -46,8 +46,15 @@ def hold(suit, daemon):
         before, taken = taken, daemon.pose_time()
 
 
-def run_session(arguments, recording, config, kills, held, log):
-    """One session with so many kills in it. A line of figures for each."""
+def way_lost_s(undisturbed, restored_s, seen_s):
+    """From the first to the last key pose that the undisturbed session has between what came back and what had been seen:
+    who stands still makes none."""
+    lost = [t for t in undisturbed if restored_s < t <= seen_s]
+    return lost[-1] - lost[0] if lost else 0.0
+
+
+def run_session(arguments, recording, config, kills, held, key_poses, log):
+    """One session with so many kills in it: its map and the times of its key poses. A line of figures for each kill; `key_poses`: undisturbed."""
     length = recording[-1][0] - recording[0][0]
     suit = Suit(recording, arguments.speed)
     moments = sorted(log.random.uniform(2.0, length) for _ in range(kills))
@@ -69,15 +76,15 @@ def run_session(arguments, recording, config, kills, held, log):
         daemon = Daemon(arguments.kinemapd, config)
         suit.port = daemon.suit_port
         restored, poses = daemon.restored()
-        lost_s = max(0.0, seen_s - poses[-1]["time"]) / arguments.speed if poses else 0.0
+        lost_s = way_lost_s(key_poses, poses[-1]["time"] if poses else 0.0, seen_s) / arguments.speed
         log.add(moment, missing(announced, restored), lost_s, len(announced["objects"]), "".join(died.log[-20:]))
     suit.running.set()
     while not suit.ended:
         time.sleep(0.05)
     time.sleep(4.5)  # after 3 s of silence the map is settled
-    final = daemon.get("map")
+    final, poses = daemon.get("map"), daemon.get("trajectory")["poses"]
     daemon.kill()
-    return final
+    return final, [p["time"] for p in poses]
 
 
 class Log:
@@ -109,14 +116,14 @@ def main():
         subprocess.run([arguments.kinemap, "sim", "--seed", str(arguments.seed), "--drift", "good", "--out", name], check=True, stdout=subprocess.DEVNULL)
         recording = list(datagrams(folder / "session.pcap"))
         session, missed = 0, {True: [], False: []}
-        undisturbed = None
+        undisturbed, key_poses = None, []
         while log.kills < arguments.kills:
             config = folder / f"config{session}.json"
             config.write_text(json.dumps({"journal": {"directory": str(folder / f"state{session}"), "min_free_mb": 0}}))
             kills = min(arguments.per_session, arguments.kills - log.kills) if undisturbed else 0
             held = session % 2 == 1
-            final = run_session(arguments, recording, config, kills, held, log)
-            undisturbed = undisturbed or final
+            final, times = run_session(arguments, recording, config, kills, held, key_poses, log)
+            undisturbed, key_poses = undisturbed or final, key_poses or times
             others, farthest = moved(undisturbed, final)
             if session:
                 missed[held].append(bool(others))

@@ -102,12 +102,15 @@ std::string missing(const Config::Api& config, bool loopback_only, bool tokens, 
 Result<Security> load_security(const Config::Api& config) {
   const auto address = parse_address(config.address);
   const bool loopback_only = address && is_loopback(*address);
-  auto tokens = load_tokens(source_of(config.tokens, "kinemap.tokens"));
+  const Source token_file = source_of(config.tokens, "kinemap.tokens");
+  const Source certificate = source_of(config.certificate, "kinemap.crt"), key = source_of(config.key, "kinemap.key");
+  auto tokens = load_tokens(token_file);
   if (!tokens) return Error{tokens.error()};
-  auto tls = load_tls(source_of(config.certificate, "kinemap.crt"), source_of(config.key, "kinemap.key"));
+  auto tls = load_tls(certificate, key);
   if (!tls) return Error{tls.error()};
   if (auto lack = missing(config, loopback_only, !tokens->empty(), *tls != nullptr); !lack.empty()) return Error{lack};
-  return Security{WebPolicy(config, *std::move(tokens), loopback_only, *tls != nullptr), *std::move(tls)};
+  return Security{WebPolicy(config, *std::move(tokens), loopback_only, *tls != nullptr), *std::move(tls),
+                  token_file.vouched || certificate.vouched || key.vouched};
 }
 
 }  // namespace kinemap

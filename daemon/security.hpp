@@ -16,6 +16,9 @@ namespace kinemap {
 struct Security {
   WebPolicy policy;
   std::shared_ptr<net::ssl::context> tls;  ///< null: in the clear
+  /// Some of it is the service's credentials: systemd hands them over when the service starts, so reading them again
+  /// brings what was there then.
+  bool from_credentials = false;
 };
 
 /// Reads tokens, certificate and key. An Error says which file is wrong, or what an address that others can reach wants

@@ -168,6 +168,10 @@ bool Server::loopback_only() const { return impl_->loopback_only(); }
 std::optional<Error> Server::reconfigure(const Config::Api& config) {
   auto security = load_security(config);
   if (!security) return Error{security.error()};
+  if (security->from_credentials)
+    spdlog::info(
+        "api: tokens and certificate are the service's credentials, which systemd reads at its start only; where they "
+        "have changed, systemctl restart kinemapd (the session goes on)");
   impl_->reconfigure(config, *std::move(security));
   return std::nullopt;
 }

@@ -260,7 +260,9 @@ TEST_F(SecurityTest, CredentialsOfTheServiceAreTakenWithoutBeingNamed) {
   EXPECT_THAT(error_of(config), HasSubstr("wants a token"));
   ::setenv("CREDENTIALS_DIRECTORY", at("credentials").c_str(), 1);
   EXPECT_EQ(error_of(config), "no error");
+  EXPECT_TRUE(load_security(config)->from_credentials) << "a reload cannot bring others";
   ::unsetenv("CREDENTIALS_DIRECTORY");
+  EXPECT_FALSE(load_security(guarded())->from_credentials);
 }
 
 TEST_F(SecurityTest, EveryPathButThePageWantsAToken) {

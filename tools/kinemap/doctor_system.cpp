@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/stat.h>
 #include <sys/timex.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "protocol/text_format.hpp"
 #include "tools/kinemap/doctor.hpp"
+#include "tools/kinemap/pairing.hpp"
 
 namespace kinemap::cli {
 namespace {
@@ -65,13 +69,23 @@ fs::path existing(const fs::path& wanted) {
   return path;
 }
 
+/// A credential that is newer than the service, which goes by the one that was there at its start. Only root sees them.
+std::optional<fs::path> credential_since(double started_s) {
+  for (const char* name : {"kinemap.tokens", "kinemap.crt", "kinemap.key"}) {
+    const fs::path path = fs::path(kServiceCredentials) / name;
+    struct stat info {};
+    if (::stat(path.c_str(), &info) == 0 && static_cast<double>(info.st_mtim.tv_sec) > started_s) return path;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Finding check_service() {
   if (!is_there("/run/systemd/system")) return {Verdict::Ok, "service", "systemd does not run here", ""};
   auto unit =
       properties(output_of("systemctl show kinemapd.service -p LoadState -p ActiveState -p UnitFileState -p NRestarts "
-                           "-p Result 2>/dev/null"));
+                           "-p Result -p ExecMainStartTimestamp --timestamp=unix 2>/dev/null"));
   if (unit["LoadState"] != "loaded")
     return {Verdict::Note, "service", "kinemapd.service is not installed",
             "install the Debian package, or run kinemapd by hand"};
@@ -80,6 +94,13 @@ Finding check_service() {
             "journalctl -u kinemapd -n 30 says why; then sudo systemctl restart kinemapd"};
   if (unit["ActiveState"] != "active")
     return {Verdict::Note, "service", "kinemapd.service is " + unit["ActiveState"], "sudo systemctl start kinemapd"};
+  const std::string started = unit["ExecMainStartTimestamp"];  // "@1700000000"
+  if (const auto newer = started.size() > 1 ? credential_since(std::atof(started.c_str() + 1)) : std::nullopt)
+    return {Verdict::Problem, "service",
+            newer->string() +
+                " is newer than the service, which goes by the one before: tokens that were taken back "
+                "are still good",
+            "sudo systemctl restart kinemapd; the session goes on"};
   if (unit["UnitFileState"] != "enabled")
     return {Verdict::Note, "service", "kinemapd.service runs, but will not after the next boot",
             "sudo systemctl enable kinemapd"};

@@ -26,6 +26,8 @@ class Daemon {
   void ask_for_pulse() { pipeline_.ask_for_pulse(); }
   [[nodiscard]] std::uint64_t pulse() const { return pipeline_.pulse(); }
   [[nodiscard]] SolverProgress solver_progress() const { return pipeline_.solver_progress(); }
+  /// How long the solver has been at its present entry; 0 when it is at none.
+  [[nodiscard]] double solver_at_entry_s() const { return pipeline_.solver_at_entry_s(); }
   /// One line for `systemctl status`.
   [[nodiscard]] std::string summary() const;
 

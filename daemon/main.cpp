@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "daemon/config.hpp"
 #include "daemon/daemon.hpp"
@@ -23,7 +25,8 @@ constexpr const char* kFooter =
     "Exit codes: 0 ended by a signal, 1 could not start, 2 wrong configuration or arguments, 3 a port is taken.";
 
 constexpr int kLooksAPeriod = 4;    // of the watchdog's
-constexpr int kSolverPeriods = 12;  // that the solver may be at one entry: two minutes, where optimising takes seconds
+constexpr int kSolverPeriods = 12;  // that the solver may have work and not move: two minutes
+constexpr double kLongS = 120.0;    // at one entry, where optimising takes seconds
 
 struct Arguments {
   std::string config_path;
@@ -68,6 +71,14 @@ void reload(const Arguments& arguments, Daemon& daemon) {
     spdlog::error("SIGHUP: the configuration stays as it was: {}", config.error());
 }
 
+/// An optimisation takes tens of megabytes for a second. By default glibc learns from the first of them to keep such
+/// blocks in the solver's heap, where small ones that stay come to lie between them: after four hours two thirds of it
+/// were holes. With fixed limits, large blocks go back to the kernel when they are freed.
+void keep_heap_small() {
+  ::mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+  ::mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
+}
+
 int run(const Arguments& arguments, const Config& config) {
   Signals signals;
   auto started = Daemon::start(config);
@@ -79,11 +90,14 @@ int run(const Arguments& arguments, const Config& config) {
   notify_service_manager("READY=1");
   // systemd hears of us as long as detection and solver get on, not as long as this thread does.
   Watchdog watchdog(daemon.pulse(), daemon.solver_progress(), kLooksAPeriod * kSolverPeriods);
+  bool is_long = false;
   const auto tick = [&] {
     const bool was_stuck = watchdog.solver_is_stuck();
     if (watchdog.look(daemon.pulse(), daemon.solver_progress())) notify_service_manager("WATCHDOG=1");
     if (watchdog.solver_is_stuck() && !was_stuck)
-      spdlog::critical("the solver does not come to an end; the watchdog is not fed any more");
+      spdlog::critical("the solver has work and does not move; the watchdog is not fed any more");
+    if (const bool was_long = std::exchange(is_long, daemon.solver_at_entry_s() > kLongS); is_long && !was_long)
+      spdlog::warn("the solver has been at one entry for {:.0f} s; the map waits for it, nothing is lost", kLongS);
     daemon.ask_for_pulse();
     notify_service_manager("STATUS=" + daemon.summary());
   };
@@ -117,5 +131,6 @@ int main(int argc, char** argv) {
   if (arguments.print) std::printf("%s\n", to_json(*config).dump(2).c_str());
   if (arguments.check && !arguments.print) std::printf("the configuration is right\n");
   if (arguments.print || arguments.check) return 0;
+  keep_heap_small();
   return run(arguments, *config);
 }

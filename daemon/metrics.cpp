@@ -129,10 +129,13 @@ void write_map(MetricsText& out, const Status& status) {
             std::uint64_t{map.graph.optimisations_failed});
 }
 
-void write_solver(MetricsText& out, const SolverStats& solver) {
+void write_solver(MetricsText& out, const PipelineStats& pipeline) {
+  const SolverStats& solver = pipeline.solver;
   out.histogram("kinemap_solver_event_seconds", "Time that one event took in the solver thread.", solver.events);
   out.histogram("kinemap_solver_optimisation_seconds", "Of these, those in which the graph was optimised.",
                 solver.optimisations);
+  out.gauge("kinemap_solver_entry_age_seconds", "How long the solver has been at its present entry; 0: at none.",
+            pipeline.solver_at_entry_s);
 }
 
 void write_journal(MetricsText& out, const PipelineStats& pipeline) {
@@ -203,7 +206,7 @@ std::string metrics_text(const Status& status) {
   write_stream(out, status);
   write_rings(out, status.pipeline);
   write_tracker(out, status.pipeline);
-  write_solver(out, status.pipeline.solver);
+  write_solver(out, status.pipeline);
   write_map(out, status);
   write_drift(out, status);
   write_journal(out, status.pipeline);

@@ -52,6 +52,7 @@ Pipeline::Pipeline(const TrackerConfig& tracker, const MapperConfig& mapper, con
   map_.set(mapper_.snapshot());
   solver_ = std::jthread([this](const std::stop_token& stop) { solve(stop); });
   pthread_setname_np(solver_.native_handle(), "solver");
+  pthread_getcpuclockid(solver_.native_handle(), &solver_clock_);
   if (journal_) {
     recorder_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
     pthread_setname_np(recorder_.native_handle(), "journal");
@@ -94,8 +95,16 @@ void Pipeline::ask_for_pulse() {
 bool Pipeline::offer_silence() { return frames_.push({{}, nullptr, true}); }
 
 SolverProgress Pipeline::solver_progress() const {
+  timespec cpu{};
+  ::clock_gettime(solver_clock_, &cpu);
   return {solver_steps_.load(std::memory_order_relaxed),
-          solver_at_work_.load(std::memory_order_relaxed) || events_.stats().fill > 0};
+          static_cast<std::uint64_t>(cpu.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(cpu.tv_nsec),
+          solver_since_s_.load(std::memory_order_relaxed) >= 0.0 || events_.stats().fill > 0};
+}
+
+double Pipeline::solver_at_entry_s() const {
+  const double since_s = solver_since_s_.load(std::memory_order_relaxed);
+  return since_s >= 0.0 ? now_s() - since_s : 0.0;
 }
 
 PipelineStats Pipeline::stats() const {
@@ -108,6 +117,7 @@ PipelineStats Pipeline::stats() const {
   return {tracker_stats_.get(),
           tracker_steps_.get(),
           solver_stats_.get(),
+          solver_at_entry_s(),
           frames_.stats(),
           events_.stats(),
           notices_.stats(),
@@ -274,11 +284,11 @@ void Pipeline::solve(const std::stop_token& stop) {
     }
     const auto optimisations = mapper_.snapshot()->graph.optimisations;
     const double begin_s = now_s();
-    solver_at_work_.store(true, std::memory_order_relaxed);
+    solver_since_s_.store(begin_s, std::memory_order_relaxed);
     checkpoints_.add(**message);
     take_entry(**message);
     checkpoints_.keep(**message, mapper_);
-    solver_at_work_.store(false, std::memory_order_relaxed);
+    solver_since_s_.store(-1.0, std::memory_order_relaxed);
     solver_steps_.fetch_add(1, std::memory_order_relaxed);
     const double seconds = now_s() - begin_s;
     ++stats.messages;
@@ -295,7 +305,7 @@ void Pipeline::solve(const std::stop_token& stop) {
 void Pipeline::restore(const std::stop_token& stop) {
   if (stored_.empty()) return;
   const auto begin = std::chrono::steady_clock::now();
-  solver_at_work_.store(true, std::memory_order_relaxed);
+  solver_since_s_.store(now_s(), std::memory_order_relaxed);
   std::size_t next = 0;
   if (auto checkpoint = checkpoints_.restore(stored_)) {
     mapper_ = std::move(checkpoint->mapper);
@@ -305,12 +315,13 @@ void Pipeline::restore(const std::stop_token& stop) {
   for (; next < stored_.size(); ++next) {
     entries_restored_.store(next, std::memory_order_relaxed);
     if (stop.stop_requested()) return;
+    solver_since_s_.store(now_s(), std::memory_order_relaxed);
     checkpoints_.add(stored_[next]);
     journal::tell(mapper_, stored_[next]);
     solver_steps_.fetch_add(1, std::memory_order_relaxed);
   }
   entries_restored_.store(next, std::memory_order_relaxed);
-  solver_at_work_.store(false, std::memory_order_relaxed);
+  solver_since_s_.store(-1.0, std::memory_order_relaxed);
   stored_ = {};
   publish();
   spdlog::info("journal: {} objects and {} key poses are back, after {:.1f} s", map_.get()->objects.size(),

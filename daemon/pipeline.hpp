@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,6 +49,7 @@ struct PipelineStats {
   TrackerStats tracker;
   Durations tracker_steps;  ///< one for each frame
   SolverStats solver;
+  double solver_at_entry_s = 0.0;  ///< for so long it has been at its present entry; 0: it is at none
   RingStats frames, events, notices;
   std::uint64_t events_held_back = 0;  ///< events that had to wait because the solver was that far behind
   bool has_journal = false;
@@ -111,6 +113,8 @@ class Pipeline {
 
   /// Any thread: how far the solver is, for the watchdog.
   [[nodiscard]] SolverProgress solver_progress() const;
+  /// Any thread: how long the solver has been at its present entry; 0 when it is at none.
+  [[nodiscard]] double solver_at_entry_s() const;
 
   /// Any thread. The map is never null.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> map() const { return map_.get(); }
@@ -175,7 +179,7 @@ class Pipeline {
   std::atomic<double> writing_since_s_{-1.0};       // journal → everyone who asks; negative: nothing is being written
   std::atomic<std::uint64_t> entries_restored_{0};  // solver → everyone who asks
   std::atomic<std::uint64_t> solver_steps_{0};      // solver → everyone who asks
-  std::atomic<bool> solver_at_work_{false};         // solver → everyone who asks
+  std::atomic<double> solver_since_s_{-1.0};        // solver → everyone who asks; negative: it is at no entry
   LatestValue<Published> published_;                // solver → journal
 
   const MapperConfig mapper_config_;
@@ -201,6 +205,7 @@ class Pipeline {
 
   const int realtime_priority_;
   std::string realtime_refusal_;  // written by the constructor only
+  clockid_t solver_clock_{};      // written by the constructor only
   std::jthread solver_, recorder_, detection_;
 };
 

@@ -140,6 +140,7 @@ Json map_json(const Status& status) {
                {"solver",
                 {{"messages", solver.messages},
                  {"longest_s", rounded(solver.longest_s, 1e6)},
+                 {"at_entry_s", rounded(status.pipeline.solver_at_entry_s)},
                  {"busy_s", rounded(solver.busy_s)}}}};
   if (const auto drift = corrected_drift(status))
     json["drift"] = {{"distance", rounded(drift->distance_m)}, {"turn", rounded(drift->turn_rad)}};

@@ -42,6 +42,7 @@ Status sample_status() {
   status.pipeline.has_recorder = true;
   for (const double seconds : {3e-6, 4e-6, 20.0}) status.pipeline.tracker_steps.add(seconds);
   status.pipeline.solver.events.add(0.25);
+  status.pipeline.solver_at_entry_s = 12.5;
   return status;
 }
 
@@ -87,6 +88,7 @@ TEST(Metrics, HistogramsAreCumulativeAndEndWithAll) {
   EXPECT_THAT(text, HasSubstr("kinemap_tracker_step_seconds_sum 20.000007\n"));
   EXPECT_THAT(text, HasSubstr("kinemap_tracker_step_seconds_count 3\n"));
   EXPECT_THAT(text, HasSubstr("kinemap_solver_event_seconds_count 1\n"));
+  EXPECT_THAT(text, HasSubstr("kinemap_solver_entry_age_seconds 12.5\n"));
 }
 
 /// "Every drop is counted and visible": a counter of these structs that /metrics does not show is found here.

@@ -45,6 +45,8 @@ TEST(Pipeline, TellsTheWatchdogThatTheSolverGoesOn) {
     return stats.tracker.frames == 600 && stats.solver.messages > 0 && !pipeline.solver_progress().has_work &&
            pipeline.solver_progress().steps == pipeline.stats().solver.messages;
   }));
+  EXPECT_GT(pipeline.solver_progress().cpu_ns, 0U);
+  EXPECT_EQ(pipeline.stats().solver_at_entry_s, 0.0) << "it is at none";
 }
 
 /// Empty, or why no thread can have it here.

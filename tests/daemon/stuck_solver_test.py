@@ -56,7 +56,7 @@ with tempfile.TemporaryDirectory() as folder:
         if holder.poll() is not None:
             print("SKIPPED:", holder.stderr.read())
             sys.exit(77)
-        until(inbox, log, "the solver does not come to an end")
+        until(inbox, log, "the solver has work and does not move")
         beats(inbox, 1)  # those that were on their way
         assert beats(inbox, 3) == 0, "it is still fed"
     finally:

@@ -18,9 +18,10 @@ TEST(Watchdog, IsFedByTheDetectionLoop) {
 
 TEST(Watchdog, NoticesASolverThatHangsForGood) {
   std::uint64_t pulse = 0;
-  Watchdog watchdog(pulse, {7, true}, kPatience);
-  for (int i = 1; i < kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {7, true})) << i;
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watchdog.look(++pulse, {7, true})) << "detection waits for room and beats";
+  Watchdog watchdog(pulse, {7, 500, true}, kPatience);
+  for (int i = 1; i < kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {7, 500, true})) << i;
+  for (int i = 0; i < 10; ++i)
+    EXPECT_FALSE(watchdog.look(++pulse, {7, 500, true})) << "detection waits for room and beats";
   EXPECT_TRUE(watchdog.solver_is_stuck());
 }
 
@@ -28,16 +29,24 @@ TEST(Watchdog, LetsASolverTakeItsTime) {
   std::uint64_t pulse = 0, steps = 0;
   Watchdog watchdog(pulse, {}, kPatience);
   for (int entry = 0; entry < 20; ++entry) {
-    for (int i = 1; i < kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {steps, true}));
-    EXPECT_TRUE(watchdog.look(++pulse, {++steps, true})) << "each takes nearly all the patience there is";
+    for (int i = 1; i < kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {steps, 0, true}));
+    EXPECT_TRUE(watchdog.look(++pulse, {++steps, 0, true})) << "each takes nearly all the patience there is";
   }
+}
+
+TEST(Watchdog, LeavesASolverAloneThatComputes) {
+  std::uint64_t pulse = 0, cpu_ns = 0;
+  Watchdog watchdog(pulse, {}, kPatience);
+  for (int i = 0; i < 100 * kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {7, ++cpu_ns, true}));
+  for (int i = 1; i < kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {7, cpu_ns, true}));
+  EXPECT_FALSE(watchdog.look(++pulse, {7, cpu_ns, true})) << "and then waits for ever";
 }
 
 TEST(Watchdog, ASolverWithoutWorkNeedNotMove) {
   std::uint64_t pulse = 0;
   Watchdog watchdog(pulse, {}, kPatience);
-  for (int i = 0; i < 10 * kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {5, false}));
-  EXPECT_TRUE(watchdog.look(++pulse, {5, true})) << "its patience begins with the work";
+  for (int i = 0; i < 10 * kPatience; ++i) EXPECT_TRUE(watchdog.look(++pulse, {5, 0, false}));
+  EXPECT_TRUE(watchdog.look(++pulse, {5, 0, true})) << "its patience begins with the work";
 }
 
 }  // namespace

@@ -101,6 +101,18 @@ std::optional<Finding> losses_by_daemon(const Json& status) {
   return std::nullopt;
 }
 
+/// Whether the map keeps up with what is done; nullopt: it does.
+std::optional<Finding> mapping_by_daemon(const Json& status) {
+  constexpr double kLongS = 120.0;
+  const double at_entry_s = status.value(Json::json_pointer("/map/solver/at_entry_s"), 0.0);
+  if (at_entry_s < kLongS) return std::nullopt;
+  return Finding{
+      Verdict::Note, "mapping",
+      format("the solver has been at one gesture for %.0f s; the map waits for it, nothing is lost", at_entry_s),
+      "what else runs on this machine? Should it never end: the session's journal (kinemap sessions export) "
+      "shows why"};
+}
+
 constexpr std::size_t kUdpHeader = 8;
 
 /// What was sent to this UDP port, of an IPv4 packet as a raw socket has it, with its header.
@@ -204,6 +216,7 @@ Findings check_suit(const Config& config, const Json& status, double listen_s) {
   if (status.is_object()) {
     Findings findings{suit_by_daemon(config, status["suit"])};
     if (auto losses = losses_by_daemon(status)) findings.push_back(std::move(*losses));
+    if (auto mapping = mapping_by_daemon(status)) findings.push_back(std::move(*mapping));
     return findings;
   }
   if (config.suit.transport == "udp") return {suit_by_listening(config, listen_s)};

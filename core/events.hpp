@@ -63,6 +63,7 @@ struct Pivot {
   double end_s = 0.0;
   Eigen::Vector3d p_hand = Eigen::Vector3d::Zero();          ///< touching point in the right-hand segment's frame, m
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of it, m²; wide where the turns say nothing
+  std::optional<double> stature_m;                           ///< as in Trace
 };
 
 using Event = std::variant<KeyPose, Trace, Pivot, Sitting>;

@@ -121,6 +121,13 @@ struct TouchingHand {
   Eigen::Vector3d sigma_m = Eigen::Vector3d::Zero();
 };
 
+/// Who drew, and with what.
+struct MapWearer {
+  std::string name;                 ///< as the suit says; may be empty
+  std::optional<double> stature_m;  ///< body height as the bone lengths give it away
+  TouchingHand hand;
+};
+
 struct GraphSummary {
   std::size_t key_poses = 0;
   std::size_t landmarks = 0;
@@ -145,7 +152,8 @@ struct MapSnapshot {
   Pose T_map_odom;  ///< live correction: T_map_pelvis = T_map_odom * T_odom_pelvis
   /// Of the newest key pose: position (m) and rotation vector (rad) about the pelvis, both in the map's axes.
   std::optional<Eigen::Matrix<double, 6, 6>> pelvis_covariance;
-  std::optional<TouchingHand> hand;  ///< absent until something was touched
+  std::optional<TouchingHand> hand;  ///< of who drew last; absent until something was touched
+  std::vector<MapWearer> wearers;    ///< in the order in which they came; empty while there was one alone
   GraphSummary graph;
 };
 

@@ -105,6 +105,7 @@ std::string MapHistory::delta_text(std::uint64_t revision) const {
   changed.unresolved = map_->unresolved;
   changed.T_map_odom = map_->T_map_odom;
   changed.hand = map_->hand;
+  changed.wearers = map_->wearers;
   changed.graph = map_->graph;
 
   Json json = with_after(to_json(changed), "revision", {{"run", run_}, {"since", revision}});

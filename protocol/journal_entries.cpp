@@ -63,6 +63,7 @@ void fields(V& v, Pivot& e) {
   v("end", e.end_s);
   v("point", e.p_hand);
   v("covariance", e.covariance);
+  v("stature", e.stature_m);
 }
 template <class V>
 void fields(V& v, Sitting& e) {

@@ -115,6 +115,14 @@ Json to_json(const Doorway& doorway) {
       {"position", array_of(doorway.position)}, {"heading", rounded(doorway.heading_rad)}, {"rooms", doorway.room_ids}};
 }
 
+Json to_json(const MapWearer& wearer) {
+  Json json = Json::object();
+  if (!wearer.name.empty()) json["name"] = wearer.name;
+  if (wearer.stature_m) json["stature"] = rounded(*wearer.stature_m);
+  json["hand"] = hand_json(wearer.hand);
+  return json;
+}
+
 Json to_json(const MapSnapshot& map) {
   Json json = {{"format", "kinemap/map"},
                {"version", kVersion},
@@ -129,6 +137,7 @@ Json to_json(const MapSnapshot& map) {
     unresolved.push_back({{"begin", rounded(trace.begin_s)}, {"end", rounded(trace.end_s)}, {"reason", trace.reason}});
   json["correction"] = to_json(map.T_map_odom);
   if (map.hand) json["hand"] = hand_json(*map.hand);
+  if (!map.wearers.empty()) json["wearers"] = list_json(map.wearers);
   json["graph"] = graph_json(map.graph);
   return json;
 }

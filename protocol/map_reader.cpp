@@ -122,6 +122,14 @@ TouchingHand read_hand(const JsonCursor& json) {
   return hand;
 }
 
+MapWearer read_wearer(const JsonCursor& json) {
+  MapWearer wearer;
+  if (json.has("name")) wearer.name = json.at("name").string();
+  if (json.has("stature")) wearer.stature_m = json.at("stature").number();
+  wearer.hand = read_hand(json.at("hand"));
+  return wearer;
+}
+
 GraphSummary read_graph(const JsonCursor& json) {
   GraphSummary graph;
   graph.key_poses = json.at("key_poses").count();
@@ -160,6 +168,8 @@ Result<MapSnapshot> map_from_text(const std::string& text) {
     map.unresolved.push_back({trace.at("begin").number(), trace.at("end").number(), trace.at("reason").string()});
   map.T_map_odom = read_pose(root.at("correction"));
   if (root.has("hand")) map.hand = read_hand(root.at("hand"));
+  if (root.has("wearers"))
+    for (const JsonCursor& wearer : root.at("wearers").items()) map.wearers.push_back(read_wearer(wearer));
   map.graph = read_graph(root.at("graph"));
   if (error) return *error;
   return map;

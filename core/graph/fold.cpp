@@ -16,7 +16,6 @@ constexpr double kNothing = 1e-12;  // part of the largest eigenvalue: rounding,
 
 /// ½δᵀHδ + gᵀδ + ½c on the numbers of a landmark and the touching point.
 struct Quadratic {
-  std::size_t touch = 0;
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
   double c = 0.0;
@@ -34,16 +33,16 @@ void add(const ResidualBlock& block, int first, int size, bool with_touch, const
   sum.c += r.squaredNorm();
 }
 
-FoldedFactor factor_of(const Quadratic& sum, std::size_t landmark, const Graph& graph) {
+FoldedFactor factor_of(const Quadratic& sum, std::size_t landmark, std::size_t touch, const Graph& graph) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(sum.H);
   const double least = kNothing * solver.eigenvalues().cwiseAbs().maxCoeff();
   const auto rank = (solver.eigenvalues().array() > least).count();
   const Eigen::VectorXd roots = solver.eigenvalues().tail(rank).cwiseSqrt();
   FoldedFactor out;
   out.landmark = landmark;
-  out.touch = sum.touch;
+  out.touch = touch;
   out.at = graph.landmarks[landmark];
-  if (!graph.touch_points.empty()) out.p_hand = graph.touch_points[sum.touch].p_hand;
+  if (!graph.touch_points.empty()) out.p_hand = graph.touch_points[touch].p_hand;
   out.sqrt_information = roots.asDiagonal() * solver.eigenvectors().rightCols(rank).transpose();
   out.residual = roots.cwiseInverse().asDiagonal() * (solver.eigenvectors().rightCols(rank).transpose() * sum.g);
   out.rest = std::sqrt(std::max(0.0, sum.c - out.residual.squaredNorm()));
@@ -60,7 +59,7 @@ std::optional<std::vector<FoldedFactor>> fold(Graph part) {
   Values values(part);
   const ResidualBlocks problem(part, values, 0);
   const std::size_t poses = part.poses.size(), landmarks = part.landmarks.size();
-  std::map<std::size_t, Quadratic> sums;
+  std::map<std::pair<std::size_t, std::size_t>, Quadratic> sums;  // by landmark and touching point
   Linearised linearised;
   for (const ResidualBlock& block : problem.blocks) {
     const int first = block.variables[0] < poses ? 1 : 0;  // the landmark's place among the variables
@@ -70,21 +69,25 @@ std::optional<std::vector<FoldedFactor>> fold(Graph part) {
     const std::size_t landmark = variable - poses;
     const LandmarkKind kind = part.landmarks[landmark].kind;
     const int size = dimension(kind);
-    Quadratic& sum = sums[landmark];
-    if (first + 1 < block.count) sum.touch = block.variables[static_cast<std::size_t>(first) + 1] - poses - landmarks;
-    const bool with_touch = kind != LandmarkKind::Seat && !part.touch_points[sum.touch].fixed;
+    const auto after = static_cast<std::size_t>(first) + 1;
+    const std::size_t touch = first + 1 < block.count ? block.variables[after] - poses - landmarks : 0;
+    Quadratic& sum = sums[{landmark, touch}];
+    const bool with_touch = kind != LandmarkKind::Seat && !part.touch_points[touch].fixed;
     if (sum.g.size() == 0) {
       const int columns = size + (with_touch ? 3 : 0);
       sum.H = Eigen::MatrixXd::Zero(columns, columns), sum.g = Eigen::VectorXd::Zero(columns);
     }
     add(block, first, size, with_touch, linearised, sum);
   }
+  // Contacts of a fixed point have no such variable, and are all one.
+  const auto free = [&part](std::size_t touch) { return part.touch_points[touch].fixed ? 0 : touch; };
   for (const ContactFactor& c : part.contacts)
-    if (part.landmarks[c.landmark].active) sums[c.landmark].weighted_squares += weighted_square(part, c);
+    if (part.landmarks[c.landmark].active)
+      sums[{c.landmark, free(c.touch)}].weighted_squares += weighted_square(part, c);
   for (const FoldedFactor& f : part.folded)
-    if (part.landmarks[f.landmark].active) sums[f.landmark].weighted_squares += f.weighted_squares;
+    if (part.landmarks[f.landmark].active) sums[{f.landmark, free(f.touch)}].weighted_squares += f.weighted_squares;
   std::vector<FoldedFactor> out;
-  for (const auto& [landmark, sum] : sums) out.push_back(factor_of(sum, landmark, part));
+  for (const auto& [of, sum] : sums) out.push_back(factor_of(sum, of.first, of.second, part));
   return out;
 }
 

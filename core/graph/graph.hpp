@@ -169,7 +169,7 @@ struct LandmarkPrior {
   double sigma = 1.0;
 };
 
-/// What contacts or seats that are no more in the graph said of a landmark and of the touching point
+/// What contacts or seats that are no more in the graph said of a landmark and of a touching point
 /// (core/graph/fold.hpp makes it): a Gaussian on the numbers that the landmark had when they were folded, whatever it
 /// is called since. Residual: [sqrt_information·δ + residual; rest] with δ the change of these numbers, then that of
 /// the touching point.

@@ -6,12 +6,13 @@
 #include "core/events.hpp"
 #include "core/map.hpp"
 #include "core/mapper/state.hpp"
+#include "core/mapper/wearers.hpp"
 
 /// Private to core/mapper: the members of all that Mapper::checkpoint() saves. Whoever adds one to a type adds it here,
 /// and counts kCheckpointVersion up.
 namespace kinemap {
 
-constexpr std::uint32_t kCheckpointVersion = 2;
+constexpr std::uint32_t kCheckpointVersion = 3;
 
 inline void fields(Archive& a, Pose& x) { a(x.p, x.q); }
 
@@ -63,6 +64,7 @@ inline void fields(Archive& a, KeyPose& x) {
 inline void fields(Archive& a, HandContact& x) { a(x.time_s, x.key_pose, x.T_key_hand); }
 inline void fields(Archive& a, Trace& x) { a(x.begin_s, x.end_s, x.stature_m, x.contacts); }
 inline void fields(Archive& a, WearerInfo& x) { a(x.name, x.p_hand_fingertip, x.p_hand_palm, x.stature_m); }
+inline void fields(Archive& a, Wearers::Known& x) { a(x.info, x.stature_m); }
 inline void fields(Archive& a, StepSigma& x) { a(x.level_m, x.up_m, x.tilt_rad, x.heading_rad); }
 inline void fields(Archive& a, TrajectoryPose& x) { a(x.id, x.time_s, x.T_map_pelvis, x.T_odom_pelvis, x.step); }
 inline void fields(Archive& a, UnresolvedTrace& x) { a(x.begin_s, x.end_s, x.reason); }

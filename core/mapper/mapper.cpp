@@ -18,6 +18,7 @@
 #include "core/mapper/settled.hpp"
 #include "core/mapper/touch.hpp"
 #include "core/mapper/walls.hpp"
+#include "core/mapper/wearers.hpp"
 
 namespace kinemap {
 
@@ -28,15 +29,15 @@ class Mapper::Impl {
         odometry_(config.odometry),
         resolver_(config.landmarks),
         closer_(config),
-        touch_(config.hand),
+        wearers_(config.hand),
         pelvis_covariance_(config.odometry) {
-    state_.graph.touch_points.push_back(touch_.prior());
+    renew_touch_priors();
     auto empty = std::make_shared<MapSnapshot>();
     empty->revision = revision;
     snapshot_ = std::move(empty);
   }
 
-  void set_wearer(const WearerInfo& wearer) { wearer_ = wearer; }
+  void set_wearer(const WearerInfo& wearer) { wearers_.tell(wearer); }
 
   bool add(const KeyPose& key_pose) {
     odometry_.add(key_pose, state_.graph);
@@ -53,13 +54,13 @@ class Mapper::Impl {
     for (HandContact& contact : trace.contacts) contact.key_pose = pose_of(contact.key_pose);
     time_s_ = trace.end_s;
     touched_ = true;
-    touch_.expect(wearer_, trace.stature_m);
-    renew_touch_prior();
-    const auto found = resolver_.resolve(trace, state_.graph, kTouch, odometry_.floor_z());
+    const std::size_t wearer = meet(trace.stature_m);
+    const auto found = resolver_.resolve(trace, state_.graph, wearer, odometry_.floor_z());
     if (found.joined) unresolved_.pop_back();  // the trace before was its beginning
     if (found.extraction.observations.empty())
       unresolved_.push_back({trace.begin_s, trace.end_s, found.extraction.reason});
-    for (const auto& observation : found.extraction.observations) touch_.see(observation, found.trace, state_.graph);
+    for (const auto& observation : found.extraction.observations)
+      wearers_.touch(wearer).see(observation, found.trace, state_.graph);
     for (const auto& observation : found.extraction.observations)
       if (observation.landmark.kind != graph::LandmarkKind::Wall)
         odometry_.suspect_heading(trace.begin_s - kApproach, trace.end_s + config_.odometry.magnetic_after_s,
@@ -68,7 +69,7 @@ class Mapper::Impl {
     std::vector<std::size_t> newcomers;
     for (const auto& observation : found.extraction.observations)
       newcomers.push_back(
-          add_observation(observation, found.trace, found.points, kTouch, odometry_.floor_z(), config_, state_));
+          add_observation(observation, found.trace, found.points, wearer, odometry_.floor_z(), config_, state_));
     for (const std::size_t newcomer : newcomers) associate(newcomer);
     publish();
     return true;
@@ -77,8 +78,8 @@ class Mapper::Impl {
   bool add(const Pivot& pivot) {
     time_s_ = pivot.end_s;
     touched_ = true;
-    touch_.add(pivot);
-    renew_touch_prior();
+    wearers_.touch(meet(pivot.stature_m)).add(pivot);
+    renew_touch_priors();
     publish();
     return true;
   }
@@ -126,38 +127,51 @@ class Mapper::Impl {
     return true;
   }
   void fields(Archive& a) {
-    a(wearer_, odometry_, resolver_, closer_, touch_, pelvis_covariance_, touched_, state_, noise_, settled_way_,
-      unresolved_, time_s_);
+    a(odometry_, resolver_, closer_, wearers_, pelvis_covariance_, touched_, state_, noise_, settled_way_, unresolved_,
+      time_s_);
   }
 
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
   [[nodiscard]] const graph::Graph& graph() const { return state_.graph; }
 
  private:
-  static constexpr std::size_t kTouch = 0;
   static constexpr double kApproach = 2.0;          ///< s that one stands at a table or screen before one traces it
   static constexpr std::size_t kLeastClosures = 2;  ///< that bear out how a part was laid on the map
   static constexpr std::size_t kTrajectoryLag =
       10;  ///< key poses after which a walk is published without news of objects
 
-  /// What is expected of the hand changes as more becomes known of the wearer. What was estimated moves along until the
-  /// next optimisation. True when it changed.
-  bool renew_touch_prior() {
-    graph::TouchPoint& touch = state_.graph.touch_points[kTouch];
-    graph::TouchPoint expected = touch_.prior();
-    const double shift = (expected.prior - touch.prior).norm() + (expected.sigma - touch.sigma).norm();
-    if (shift < 1e-3) return false;
-    expected.p_hand += touch.p_hand - touch.prior;
-    touch = expected;
-    return true;
+  /// Who draws now.
+  std::size_t meet(std::optional<double> stature_m) {
+    wearers_.meet(stature_m);
+    renew_touch_priors();
+    return wearers_.current();
+  }
+
+  /// What is expected of a hand changes as more becomes known of its wearer. What was estimated moves along until the
+  /// next optimisation. True when one changed.
+  bool renew_touch_priors() {
+    auto& points = state_.graph.touch_points;
+    bool changed = false;
+    for (std::size_t k = 0; k < wearers_.count(); ++k) {
+      graph::TouchPoint expected = wearers_.touch(k).prior();
+      if (k == points.size()) points.push_back(expected);
+      graph::TouchPoint& touch = points[k];
+      const double shift = (expected.prior - touch.prior).norm() + (expected.sigma - touch.sigma).norm();
+      if (shift < 1e-3) continue;
+      expected.p_hand += touch.p_hand - touch.prior;
+      touch = expected;
+      changed = true;
+    }
+    return changed;
   }
 
   /// Tips or palm, by the optimum that was just reached. True when that changed what is expected of the hand.
   bool judge_touch() {
     const auto marginals = graph::Marginals::compute(state_.graph);
     if (!marginals) return false;
-    touch_.judge(state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
-    return renew_touch_prior();
+    for (std::size_t k = 0; k < wearers_.count(); ++k)
+      wearers_.touch(k).judge(state_.graph.touch_points[k], touch_covariance(state_.graph, *marginals, k));
+    return renew_touch_priors();
   }
 
   void associate(std::size_t newcomer) {
@@ -195,11 +209,18 @@ class Mapper::Impl {
     map->unresolved = unresolved_;
     if (marginals && !state_.graph.poses.empty())
       pelvis_covariance_.set(state_.graph.poses.back(), newest_marginal(state_.graph, *marginals));
-    if (marginals && touched_)
-      map->hand =
-          describe_hand(touch_, state_.graph.touch_points[kTouch], touch_covariance(state_.graph, *marginals, kTouch));
+    if (marginals && touched_) describe_hands(*marginals, *map);
     if (marginals) settle_way(*marginals);
     publish(std::move(map));
+  }
+
+  void describe_hands(const graph::Marginals& marginals, MapSnapshot& map) const {
+    for (std::size_t k = 0; k < wearers_.count(); ++k) {
+      const auto hand =
+          describe_hand(wearers_.touch(k), state_.graph.touch_points[k], touch_covariance(state_.graph, marginals, k));
+      if (k == wearers_.current()) map.hand = hand;
+      if (wearers_.count() > 1) map.wearers.push_back({wearers_.info(k).name, wearers_.stature_m(k), hand});
+    }
   }
 
   /// Publishes `map` with the trajectory up to now.
@@ -264,11 +285,10 @@ class Mapper::Impl {
   }
 
   MapperConfig config_;
-  WearerInfo wearer_;
   Odometry odometry_;
   TraceResolver resolver_;
   LoopCloser closer_;
-  TouchBelief touch_;
+  Wearers wearers_;
   PoseCovariance pelvis_covariance_;
   bool touched_ = false;  ///< a trace or pivot gesture has been seen
   MapState state_;

@@ -27,7 +27,7 @@ class Mapper {
   Mapper(Mapper&&) noexcept;
   Mapper& operator=(Mapper&&) noexcept;
 
-  /// What is known of the wearer's hand; applies to traces that follow (and to those before, at the next optimisation).
+  /// What is known of the wearer: whoever draws next (and what that wearer has drawn before, at the next optimisation).
   void set_wearer(const WearerInfo& wearer);
 
   /// Takes one event. Optimises when it closes a loop. True when a new snapshot was published: after each trace and

@@ -75,7 +75,10 @@ std::optional<Event> TraceFold::close() {
   // What the hand did after the gesture was last seen is not part of it.
   while (!trace.contacts.empty() && trace.contacts.back().time_s > seen_s_) trace.contacts.pop_back();
   hand.resize(trace.contacts.size());
-  if (auto pivot = find_pivot(hand, pivot_)) return pivot;
+  if (auto pivot = find_pivot(hand, pivot_)) {
+    pivot->stature_m = trace.stature_m;
+    return pivot;
+  }
   if (trace.contacts.empty() || trace.end_s - trace.begin_s < config_.min_duration_s ||
       extent_m < config_.min_extent_m) {
     ++rejected_;

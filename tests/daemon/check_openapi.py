@@ -74,7 +74,7 @@ def main():
         recorded = json.load(file)
     document, faults = recorded["openapi"], []
     faults += document_faults(document)
-    answered, optional = set(), {"hand", "doorways", "unresolved", "run", "note", "covariance", "journal", "sigma", "visits", "plane", "corners", "size",
+    answered, optional = set(), {"hand", "wearers", "doorways", "unresolved", "run", "note", "covariance", "journal", "sigma", "visits", "plane", "corners", "size",
                                  "height_assumed", "ends", "inferred_sides"}
     for answer in recorded["answers"]:
         where = f"{answer['path']} {answer['question']} ({answer['status']})"

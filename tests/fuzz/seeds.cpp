@@ -87,7 +87,7 @@ void write_journal(const fs::path& folder) {
       next,
       UnfinishedTrace{0.0, 0.7, true, {}, 1.7, {{0.5, 0, pose.T_odom_pelvis}}},
       UnfinishedSitting{1.5, 2.0, 0.4, 0.4, true, true, {0.5, 0, 0}, {{1.6, 1, pose.T_odom_pelvis, 0.45}}},
-      Pivot{1.0, 1.5, {0, -0.1, 0}, Eigen::Matrix3d::Identity()},
+      Pivot{1.0, 1.5, {0, -0.1, 0}, Eigen::Matrix3d::Identity(), {}},
       Sitting{1.5, 4.0, 1, pose.T_odom_pelvis, 0.45, 0.01},
       journal::StreamMark{4.0, 480, 1795343587000, 36000000U, pose.T_odom_pelvis, 0.1, 0.2},
       journal::StreamSilence{}};

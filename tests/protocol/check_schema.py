@@ -34,8 +34,10 @@ def spoilt(whole):
     yield change(["rooms", 0, "polygon"], [[0, 0], [1, 1]])
     yield change(["graph", "contacts"], -1)
     yield change(["hand", "part"], "elbow")
+    yield change(["wearers"], [{"name": "Anna", "hand": whole["hand"]}])
+    yield change(["wearers"], [{"hand": whole["hand"]}, {"name": "Anna"}])
     for key in whole:
-        if key in ("hand", "doorways"):  # not always known
+        if key in ("hand", "wearers", "doorways"):  # not always known
             continue
         other = copy.deepcopy(whole)
         del other[key]

@@ -51,7 +51,7 @@ std::vector<Entry> session() {
   }
   entries.push_back(trace(2, 30));
   entries.push_back(StreamMark{32.0, 7, 1795343584000, 86399999U, some_pose(1), 0.125, 0.0625});
-  entries.push_back(Pivot{20, 26, {0.01, -0.17, 0}, Eigen::Vector3d(1e-4, 2e-4, 1.0 / 3.0).asDiagonal()});
+  entries.push_back(Pivot{20, 26, {0.01, -0.17, 0}, Eigen::Vector3d(1e-4, 2e-4, 1.0 / 3.0).asDiagonal(), 1.75});
   entries.push_back(Sitting{30, 34, 11, some_pose(3), 0.44, 0.01});
   entries.push_back(Announced{33.5, 12, 3, 1});
   entries.push_back(StreamSilence{});
@@ -196,7 +196,7 @@ TEST(Journal, PiecesOfWhatIsFinishedAreNotRead) {
   EXPECT_EQ(count({key_pose(0), drawing, sitting, drawing}), 4U);
   EXPECT_EQ(count({key_pose(0), drawing, sitting, key_pose(1), drawing, trace(0, 8)}), 4U);
   EXPECT_EQ(count({key_pose(0), drawing, sitting, trace(0, 8), drawing, seat}), 4U);
-  EXPECT_EQ(count({key_pose(0), drawing, Pivot{1.5, 4.0, {0, 0, 0}, Eigen::Matrix3d::Identity()}, sitting, seat}), 3U);
+  EXPECT_EQ(count({key_pose(0), drawing, Pivot{1.5, 4.0, {0, 0, 0}, Eigen::Matrix3d::Identity(), {}}, sitting, seat}), 3U);
 }
 
 TEST(JournalMend, ChangesNothingWhereNothingIsMissing) {

@@ -35,6 +35,10 @@ TEST(MapJson, HoldsWhatTheMapHolds) {
   EXPECT_EQ(json["unresolved"][0]["reason"], "neither closed nor long");
   EXPECT_EQ(json["hand"]["part"], "palm");
   EXPECT_EQ(json["hand"]["touch_point"], Json::array({0.0, -0.09, -0.02}));
+  EXPECT_EQ(json["wearers"][0]["name"], "Anna");
+  EXPECT_EQ(json["wearers"][0]["stature"], 1.68);
+  EXPECT_EQ(json["wearers"][0]["hand"]["part"], "tips");
+  EXPECT_EQ(json["wearers"][1], (Json{{"hand", json["hand"]}}));
 }
 
 TEST(MapJson, LeavesOutWhatIsUnknown) {
@@ -44,7 +48,7 @@ TEST(MapJson, LeavesOutWhatIsUnknown) {
   EXPECT_EQ(table["sigma"]["size"], Json::array({0.03, 0.02}));
   EXPECT_FALSE(table.contains("height_assumed"));
   for (const char* key : {"plane", "corners", "size", "sigma"}) EXPECT_FALSE(chair.contains(key)) << key;
-  EXPECT_FALSE(to_json(MapSnapshot{}).contains("hand"));
+  for (const char* key : {"hand", "wearers"}) EXPECT_FALSE(to_json(MapSnapshot{}).contains(key)) << key;
   EXPECT_EQ(map_text(sample_map()).find("null"), std::string::npos);
 }
 
@@ -113,9 +117,9 @@ TEST(MapJson, ErrorsNameTheKeyPath) {
 TEST(MapJson, EveryRequiredKeyIsMissed) {
   const Json whole = to_json(sample_map());
   for (const auto& [key, value] : whole.items()) {
-    if (key == "frame") continue;     // says the same in every map
-    if (key == "doorways") continue;  // files of older versions lack it
-    if (key == "hand") continue;      // not always known
+    if (key == "frame") continue;                     // says the same in every map
+    if (key == "doorways") continue;                  // files of older versions lack it
+    if (key == "hand" || key == "wearers") continue;  // not always known
     Json json = whole;
     json.erase(key);
     EXPECT_EQ(error_of(json), key + ": missing");

@@ -66,6 +66,8 @@ inline MapSnapshot sample_map() {
   map.unresolved = {{20.0, 24.5, "neither closed nor long"}};
   map.T_map_odom = level_pose({0.1, -0.2, 0.0}, -0.1);
   map.hand = TouchingHand{HandPart::Palm, 0.9, {0.0, -0.09, -0.02}, {0.015, 0.02, 0.015}};
+  map.wearers = {{"Anna", 1.68, {HandPart::Tips, 0.97, {0.0, -0.18, -0.01}, {0.01, 0.012, 0.01}}},
+                 {"", std::nullopt, *map.hand}};
   map.graph = {4, 4, 120, 2, 1, 5, 0, 17.25};
   return map;
 }

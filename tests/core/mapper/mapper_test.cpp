@@ -204,6 +204,29 @@ TEST(Mapper, TheTouchingPointIsEstimated) {
   EXPECT_EQ(fixed.graph().touch_points[0].p_hand.y(), -0.10);
 }
 
+TEST(Mapper, EachWearerHasATouchingPointOfTheOwn) {
+  Wearer wearer;
+  const auto draw = [&wearer](double stature_m, double touch_m, bool pivot) {
+    wearer.stature_m = stature_m, wearer.touch_m = touch_m;
+    if (pivot) wearer.pivot(0.01);
+    wearer.walk_to(3.0, 0.0);
+    trace_table(wearer, 3.0, 1.5);
+  };
+  draw(1.85, 0.18, true);
+  draw(1.62, 0.09, true);
+  draw(1.853, 0.18, false);
+  const auto map = map_of(wearer, MapperConfig{});
+  ASSERT_EQ(map->wearers.size(), 2u) << "the first one came back";
+  EXPECT_EQ(map->wearers[0].hand.part, HandPart::Tips);
+  EXPECT_EQ(map->wearers[1].hand.part, HandPart::Palm);
+  EXPECT_NEAR(-map->wearers[0].hand.p_hand.y(), 0.18, 0.015);
+  EXPECT_NEAR(-map->wearers[1].hand.p_hand.y(), 0.09, 0.015);
+  ASSERT_TRUE(map->hand);
+  EXPECT_EQ(map->hand->p_hand, map->wearers[0].hand.p_hand) << "who drew last";
+  ASSERT_EQ(count(*map, ObjectType::Table), 1);
+  EXPECT_EQ(map->objects[0].observations, 3);
+}
+
 TEST(Mapper, TheTrajectoryKeepsUpWithAWalk) {
   Wearer wearer;
   wearer.walk_to(10.0, 0.0);

@@ -209,6 +209,9 @@ TEST(LongDay, GoesOnFromACheckpointAsIfNothingHadHappened) {
   EXPECT_FALSE(Mapper::restore(config, std::string_view(checkpoint).substr(0, checkpoint.size() - 1)));
   EXPECT_FALSE(Mapper::restore(config, checkpoint + "x"));
   EXPECT_FALSE(Mapper::restore(config, "no checkpoint"));
+  std::string older = checkpoint;
+  --older[0];  // the version
+  EXPECT_FALSE(Mapper::restore(config, older));
   for (std::size_t cut = 0; cut < checkpoint.size(); cut += 1009)
     EXPECT_FALSE(Mapper::restore(config, std::string_view(checkpoint).substr(0, cut)));
 }

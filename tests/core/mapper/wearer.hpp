@@ -9,7 +9,7 @@
 #include "core/mapper/mapper.hpp"
 
 /// A point-like wearer for the tests of the mapper: it makes the events directly (no body, no gait) from true
-/// positions, through an odometry whose heading drifts steadily. The finger tip is 0.18 m along −y of the hand.
+/// positions, through an odometry whose heading drifts steadily. What touches is `touch_m` along −y of the hand.
 namespace kinemap::test {
 
 class Wearer {
@@ -35,6 +35,7 @@ class Wearer {
   void trace(const std::vector<Eigen::Vector3d>& polyline, const Eigen::Vector2d& stand) {
     Trace out;
     out.begin_s = time_;
+    out.stature_m = stature_m;
     std::normal_distribution<double> noise(0.0, 0.004);
     for (std::size_t k = 1; k < polyline.size(); ++k) {
       const Eigen::Vector3d leg = polyline[k] - polyline[k - 1];
@@ -46,7 +47,7 @@ class Wearer {
         if (time_ - key_poses_.back().time_s >= 1.0 || moved() >= 0.2) key_pose();
         const Pose T_true_key = true_at_key_;
         Pose T_key_hand{T_true_key.inverse() * tip, Eigen::Quaterniond::Identity()};
-        T_key_hand.p += Eigen::Vector3d(noise(random_), 0.18 + noise(random_), noise(random_));
+        T_key_hand.p += Eigen::Vector3d(noise(random_), touch_m + noise(random_), noise(random_));
         out.contacts.push_back({time_, key_poses_.back().id, T_key_hand});
       }
     }
@@ -74,6 +75,15 @@ class Wearer {
     key_pose(true);
   }
 
+  /// The touching point is held on a spot and the hand turned about it.
+  void pivot(double sigma_m) {
+    events.emplace_back(
+        Pivot{time_, time_ + 6.0, {0.0, -touch_m, 0.0}, Eigen::Matrix3d::Identity() * sigma_m * sigma_m, stature_m});
+    time_ += 6.0;
+  }
+
+  double touch_m = 0.18;
+  std::optional<double> stature_m;
   std::vector<Event> events;
   std::vector<Pose> truth;  ///< T_map_pelvis of each key pose
 

@@ -38,11 +38,12 @@ graph::Matrix6 break_sqrt_information(double seconds, const MapperConfig::Odomet
 }
 
 /// After a break: whether the suit's world may still be the old one (some of the way is missing in the journal, or its
-/// stream was interrupted).
+/// stream was interrupted). Where it may have begun anew as well, it is taken for another one: that the body stayed is
+/// nearly right for both.
 bool same_world(const KeyPose& from, const KeyPose& to) {
   const Pose& a = from.T_odom_pelvis;
   const Pose& b = to.T_odom_pelvis;
-  const bool began_anew = b.p.head<2>().norm() < kOrigin && a.p.head<2>().norm() > kOrigin;
+  const bool began_anew = b.p.head<2>().norm() < kOrigin;
   return !began_anew && within_reach(a, b, to.time_s - from.time_s);
 }
 

@@ -34,6 +34,8 @@ class KeyPoseFold {
 
   [[nodiscard]] SinceKeyPose since_latest() const;
   [[nodiscard]] const KeyPose& latest() const { return latest_; }
+  /// T_odom_pelvis of the newest frame.
+  [[nodiscard]] const Pose& newest() const { return next_.T_odom_pelvis; }
   [[nodiscard]] double total_path_m() const { return total_path_m_; }
 
  private:

@@ -8,6 +8,12 @@
 
 namespace kinemap {
 
+namespace {
+
+constexpr double kRest = 0.08;  // m that a hand at rest sways, and what the suit errs by when it starts anew
+
+}  // namespace
+
 std::optional<Event> TraceFold::step(double time_s, const GestureState& gesture) {
   std::optional<Event> ended;
   if (open_ && gesture.both_since_s) seen_s_ = std::min(seen_s_, *gesture.both_since_s);
@@ -56,7 +62,12 @@ void TraceFold::stretch(const Eigen::Vector3d& wrist) {
   extent_m_ = std::max({extent_m_, from_first, (wrist - farthest_wrist_).norm()});
 }
 
-void TraceFold::move(const Pose& T_odom_before) {
+bool TraceFold::waited(const Pose& T_odom_before, const SuitFrame& frame) const {
+  return held() && !trace_.contacts.empty() && (T_odom_before * kept_.p - frame[Segment::RightHand].p).norm() < kRest;
+}
+
+void TraceFold::move(const Pose& T_odom_before, double unseen_s) {
+  seen_s_ += unseen_s;
   for (HandSample& sample : hand_) sample.T_odom_hand = T_odom_before * sample.T_odom_hand;
   first_wrist_ = T_odom_before * first_wrist_;
   farthest_wrist_ = T_odom_before * farthest_wrist_;

@@ -29,8 +29,11 @@ class TraceFold {
   /// Adds the right hand of this frame, if it moved or time passed. `latest` is the latest key pose, at or before the
   /// frame.
   void record(const SuitFrame& frame, const KeyPose& latest);
-  /// The suit's world is another one: `T_odom_before` takes what was in the old one to the new one.
-  void move(const Pose& T_odom_before);
+  /// The suit's world is another one: `T_odom_before` takes what was in the old one to the new one. The time that
+  /// nobody saw the wearer counts as none.
+  void move(const Pose& T_odom_before, double unseen_s);
+  /// Whether the right hand of an open trace is still where it was, if the suit's world was moved so.
+  [[nodiscard]] bool waited(const Pose& T_odom_before, const SuitFrame& frame) const;
   /// Ends an open trace (end of the stream, discontinuity).
   std::optional<Event> close();
   /// What was added to an open trace since the last call, if anything was; `hips` is the gesture's.

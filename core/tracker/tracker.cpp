@@ -67,13 +67,15 @@ class Tracker::Impl {
 
  private:
   void restart(const SuitFrame& frame, std::vector<Event>& events) {
-    const bool stays = frame.time_s - last_frame_s_ < kJump;
-    put(sitting_.reset(), events);
-    if (!stays) put(traces_.close(), events);
-    if (!stays) gesture_.reset();
-    put(key_poses_.finish(), events);  // the last that is known before the break
+    const double unseen_s = frame.time_s - last_frame_s_;
     const Pose& T_odom_pelvis = frame[Segment::Pelvis];
-    if (stays) traces_.move(T_odom_pelvis * stayed(key_poses_.latest().T_odom_pelvis, T_odom_pelvis).inverse());
+    const Pose T_odom_before = T_odom_pelvis * stayed(key_poses_.newest(), T_odom_pelvis).inverse();
+    const bool goes_on = unseen_s < kJump || (unseen_s < kPause && traces_.waited(T_odom_before, frame));
+    put(sitting_.reset(), events);
+    if (!goes_on) put(traces_.close(), events);
+    if (!goes_on) gesture_.reset();
+    put(key_poses_.finish(), events);  // the last that is known before the break
+    if (goes_on) traces_.move(T_odom_before, unseen_s);
     stance_.reset();
     magnetic_.reset();
   }
@@ -97,6 +99,8 @@ class Tracker::Impl {
   /// s: in so short a break the body stays and only the suit's world moves; a gesture, which is inside the body, goes
   /// on.
   static constexpr double kJump = 0.1;
+  /// s: over so long a break it goes on when the hand is where it was beside the body: the wearer has waited.
+  static constexpr double kPause = 3.0;
 
   double ball_height_m_;
   KeyPoseFold key_poses_;

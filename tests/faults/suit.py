@@ -109,6 +109,26 @@ def waiting(packets, chance):
     return min((poses[int(chance.uniform(0.3, 0.8) * len(poses))] for _ in range(60)), key=motion)
 
 
+def drawing(packets, chance):
+    """A moment amid a gesture: the left hand has lain on its hip for 4 s, and will for 4 s more."""
+
+    def on_hip(p):
+        at = lambda segment: struct.unpack_from(">3f", p.data, p.at + 24 + (segment - 1) * 32 + 4)
+        hand, hip = at(15), at(20)
+        return hand[2] > hip[2] + 0.05 and math.dist(hand, hip) < 0.35
+
+    poses = [k for k, p in enumerate(packets) if p.type == b"02"]
+    since, runs = None, []
+    for k in poses[::12]:
+        if not on_hip(packets[k]):
+            since = None
+        elif since is None:
+            since = k
+        if since is not None and packets[k].time_s - packets[since].time_s > 8.0:
+            runs.append(next(n for n in poses[poses.index(since) :] if packets[n].time_s >= packets[k].time_s - 4.0))
+    return chance.choice(runs)
+
+
 def moved_from(packets, k, heading, anew):
     """The suit's world is another one from packet k on: the pelvis at its origin, or (not anew) anywhere."""
     x, y, z = packets[k].pelvis()
@@ -165,6 +185,19 @@ def restart(packets, chance, k=None, silence_s=1.5):
     return packets
 
 
+def restart_amid_gesture(packets, chance):
+    """The wearer waits for MVN, hand on the wall."""
+    return restart(packets, chance, drawing(packets, chance))
+
+
+def restart_while_drawing(packets, chance):
+    """The wearer does not wait: 1.5 s of the gesture are lost."""
+    k = drawing(packets, chance)
+    begin = packets[k].time_s
+    tail = [p for p in packets[k:] if p.time_s >= begin + 1.5]
+    return packets[:k] + restart(tail, chance, after(tail, 0.0), 0.0)
+
+
 def long_restart(packets, chance):
     """MVN is started anew, and the wearer does not wait: half a minute of what he does is lost as well."""
     k = after(packets, chance.uniform(0.4, 0.6))
@@ -213,6 +246,8 @@ FAULTS = {
     "reset": (reset, True, None),
     "three_resets": (three_resets, True, None),
     "restart": (restart, True, None),
+    "restart_amid_gesture": (restart_amid_gesture, False, None),
+    "restart_while_drawing": (restart_while_drawing, False, None),
     "long_restart": (long_restart, False, 6),  # the wearer comes by enough of what is known for the parts to be joined
     "other_sender": (other_sender, True, None),
     "other_character": (other_character, True, None),

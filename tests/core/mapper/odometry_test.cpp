@@ -118,6 +118,13 @@ TEST(Odometry, ABreakInTheRecordOfOneWorldIsWhereTheSuitSays) {
   EXPECT_NEAR(odometry_step(from, to).p.x(), 6.0, 1e-9);
 }
 
+TEST(Odometry, NearTheOriginAWorldMayHaveBegunAnew) {
+  KeyPose from = at(0, 1.2, 0.95), to = at(1, 0.1, 0.95);
+  to.time_s = 1.5;
+  to.discontinuity = true;
+  EXPECT_NEAR(odometry_step(from, to).p.norm(), 0.0, 1e-9) << "within reach, but that says nothing here";
+}
+
 /// Noise of the heading on the way to key pose `k`.
 double heading_noise(const graph::Graph& graph, KeyPoseId k) {
   return step_sigma(graph, graph.between.at(k - 1)).heading_rad;

@@ -216,6 +216,29 @@ TEST(Tracker, AGestureGoesOnWhenTheSuitsWorldJumpsFromOneFrameToTheNext) {
   EXPECT_NEAR(double(outcome.traces[0].contacts.size()), double(whole.traces[0].contacts.size()), 1.0);
 }
 
+TEST(Tracker, AGestureGoesOnAfterASilenceWhereTheHandHasWaited) {
+  const Puppet puppet;
+  auto frames = perform(puppet, between_standing(10.0, [](double t) {
+                          Figure f = standing();
+                          f.arm = {on_hip(), drawing(t)};
+                          return f;
+                        }));
+  const Outcome whole = track(frames);
+  ASSERT_EQ(whole.traces.size(), 1u);
+  const auto restarted =
+      std::find_if(frames.begin(), frames.end(), [](const SuitFrame& frame) { return frame.time_s >= 6.0; });
+  const Pose T_new_old = level_pose({1, -0.5, 0}, -2.0);
+  restarted->discontinuity = true;
+  for (auto frame = restarted; frame != frames.end(); ++frame) {
+    frame->time_s += 1.5;
+    for (Pose& segment : frame->segments) segment = T_new_old * segment;
+  }
+  const Outcome outcome = track(frames);
+  ASSERT_EQ(outcome.traces.size(), 1u);
+  EXPECT_NEAR(outcome.traces[0].end_s, whole.traces[0].end_s + 1.5, 1e-9);
+  EXPECT_NEAR(double(outcome.traces[0].contacts.size()), double(whole.traces[0].contacts.size()), 1.0);
+}
+
 TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
   const Puppet puppet;
   const auto acts = between_standing(16.0, [&](double t) {
@@ -225,7 +248,7 @@ TEST(Tracker, DiscontinuityClosesWhatIsOpen) {
   });
   auto frames = perform(puppet, acts);
   for (const double at : {7.0, 14.0}) {
-    std::erase_if(frames, [at](const SuitFrame& frame) { return frame.time_s >= at - 0.3 && frame.time_s < at; });
+    std::erase_if(frames, [at](const SuitFrame& frame) { return frame.time_s >= at - 0.6 && frame.time_s < at; });
     for (SuitFrame& frame : frames) {
       if (frame.time_s >= at) {
         frame.discontinuity = true;

@@ -46,14 +46,23 @@ def hold(suit, daemon):
         before, taken = taken, daemon.pose_time()
 
 
-def way_lost_s(undisturbed, restored_s, seen_s):
-    """From the first to the last key pose that the undisturbed session has between what came back and what had been seen:
-    who stands still makes none."""
-    lost = [t for t in undisturbed if restored_s < t <= seen_s]
+def written_s(kinemap, state):
+    """How far the journal on the disk reaches, stream time: its entries are in the order of what happened."""
+    sessions = list((state / "sessions").glob("*"))
+    if not sessions:
+        return 0.0
+    show = [kinemap, "sessions", "show", sessions[0].name, "--directory", str(state), "--json"]
+    return json.loads(subprocess.run(show, check=True, capture_output=True).stdout)["duration_s"]
+
+
+def way_lost_s(undisturbed, written, seen):
+    """From the first to the last key pose of the undisturbed session that had been seen and was not written. (The map that is served tells of key
+    poses some at a time, and who stands still makes none: neither says what was lost.)"""
+    lost = [t for t in undisturbed if written < t <= seen]
     return lost[-1] - lost[0] if lost else 0.0
 
 
-def run_session(arguments, recording, config, kills, held, key_poses, log):
+def run_session(arguments, recording, config, state, kills, held, key_poses, log):
     """One session with so many kills in it: its map and the times of its key poses. A line of figures for each kill; `key_poses`: undisturbed."""
     length = recording[-1][0] - recording[0][0]
     suit = Suit(recording, arguments.speed)
@@ -72,11 +81,11 @@ def run_session(arguments, recording, config, kills, held, key_poses, log):
         seen_s = daemon.pose_time()
         suit.running.clear()
         daemon.kill()
+        lost_s = way_lost_s(key_poses, written_s(arguments.kinemap, state), seen_s) / arguments.speed
         died = daemon
         daemon = Daemon(arguments.kinemapd, config)
         suit.port = daemon.suit_port
-        restored, poses = daemon.restored()
-        lost_s = way_lost_s(key_poses, poses[-1]["time"] if poses else 0.0, seen_s) / arguments.speed
+        restored, _ = daemon.restored()
         log.add(moment, missing(announced, restored), lost_s, len(announced["objects"]), "".join(died.log[-20:]))
     suit.running.set()
     while not suit.ended:
@@ -119,10 +128,11 @@ def main():
         undisturbed, key_poses = None, []
         while log.kills < arguments.kills:
             config = folder / f"config{session}.json"
-            config.write_text(json.dumps({"journal": {"directory": str(folder / f"state{session}"), "min_free_mb": 0}}))
+            state = folder / f"state{session}"
+            config.write_text(json.dumps({"journal": {"directory": str(state), "min_free_mb": 0}}))
             kills = min(arguments.per_session, arguments.kills - log.kills) if undisturbed else 0
             held = session % 2 == 1
-            final, times = run_session(arguments, recording, config, kills, held, key_poses, log)
+            final, times = run_session(arguments, recording, config, state, kills, held, key_poses, log)
             undisturbed, key_poses = undisturbed or final, key_poses or times
             others, farthest = moved(undisturbed, final)
             if session:

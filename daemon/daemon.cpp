@@ -9,8 +9,12 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/service_manager.hpp"
+
 namespace kinemap {
 namespace {
+
+constexpr const char* kSuitSocket = "suit";
 
 /// All of api but where it listens.
 bool is_reloadable(const std::string& key) {
@@ -49,9 +53,10 @@ Started<Daemon> Daemon::start(const Config& config) {
   auto journal = open_journal(config.journal);
   if (!journal) return StartError{ExitCode::Config, journal.error()};
   auto daemon = std::unique_ptr<Daemon>(new Daemon(config, *std::move(journal)));
-  auto receiver = Receiver::open(config.suit, config.stream, daemon->suit_sink());
+  auto receiver = Receiver::open(config.suit, config.stream, daemon->suit_sink(), take_kept_socket(kSuitSocket));
   if (auto* error = std::get_if<StartError>(&receiver)) return std::move(*error);
   daemon->receiver_ = std::get<0>(std::move(receiver));
+  keep_socket(kSuitSocket, daemon->receiver_->udp_socket());
   auto server = Server::open(config.api, daemon->sources(), config.suit, daemon->suit_port());
   if (auto* error = std::get_if<StartError>(&server)) return std::move(*error);
   daemon->server_ = std::get<0>(std::move(server));

@@ -57,13 +57,16 @@ struct ReceiverState {
 /// Bytes go through an Assembler to the sink. Receiving ends when it is destroyed.
 class Receiver {
  public:
-  /// Binds at once; port 0 lets the kernel choose (`port()` tells).
-  static Started<Receiver> open(const Config::Suit& suit, const AssemblerConfig& stream, SuitSink sink);
+  /// Binds at once; port 0 lets the kernel choose (`port()` tells). `kept`: a UDP socket of a daemon before, or -1; it
+  /// is taken over, with what came to it meanwhile, where it is bound as `suit` says, else closed.
+  static Started<Receiver> open(const Config::Suit& suit, const AssemblerConfig& stream, SuitSink sink, int kept = -1);
   ~Receiver();
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
+  /// The UDP socket, for the next daemon; -1 with TCP, where each connection ends with us.
+  [[nodiscard]] int udp_socket() const;
   /// Any thread.
   [[nodiscard]] ReceiverState state() const;
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/signals.hpp"
 
-#ifdef KINEMAP_SYSTEMD
-#include <systemd/sd-daemon.h>
-#endif
-
 #include <csignal>
 
 namespace kinemap {
@@ -34,20 +30,6 @@ Signal Signals::wait(std::chrono::milliseconds period, const std::function<void(
   if (caught == SIGHUP) return Signal::Reload;
   set_.clear();
   return Signal::End;
-}
-
-void notify_service_manager([[maybe_unused]] const std::string& state) {
-#ifdef KINEMAP_SYSTEMD
-  sd_notify(0, state.c_str());
-#endif
-}
-
-std::optional<std::chrono::milliseconds> watchdog_period() {
-#ifdef KINEMAP_SYSTEMD
-  std::uint64_t microseconds = 0;
-  if (sd_watchdog_enabled(0, &microseconds) > 0) return std::chrono::milliseconds(microseconds / 1000);
-#endif
-  return std::nullopt;
 }
 
 }  // namespace kinemap

@@ -8,8 +8,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <functional>
-#include <optional>
-#include <string>
 
 namespace kinemap {
 
@@ -30,10 +28,5 @@ class Signals {
   boost::asio::signal_set set_;
   boost::asio::steady_timer timer_;
 };
-
-/// Tells systemd, when it started us (Type=notify); nothing otherwise.
-void notify_service_manager(const std::string& state);
-/// How often systemd wants a sign of life (WatchdogSec=); nullopt when it wants none.
-std::optional<std::chrono::milliseconds> watchdog_period();
 
 }  // namespace kinemap

@@ -143,6 +143,7 @@ killed() {
   eventually new_process "$pid"
   eventually has_objects "$objects_before"
   eventually logged "the suit's stream goes on"
+  eventually logged "goes on with the socket of the daemon before"
 }
 walked_to_the_end() {
   tail --pid="$replay" -f /dev/null
@@ -257,7 +258,7 @@ step "messages are in the journal with their fields" journal_fields
 step "exposure as systemd sees it running: at most 1.2" exposure
 start_replay
 step "fed by kinemap replay: objects appear" eventually has_objects 2
-step "kill -9 in the middle of the walk: back, with all objects, and the session goes on" killed
+step "kill -9 in the middle of the walk: back, with the same socket and all objects, and the session goes on" killed
 step "the walk ends: at least 7 of its 9 objects are there" walked_to_the_end
 step "SIGSTOP: the watchdog brings it back" stopped_by_signal
 step "the detection thread alone is held: the watchdog notices and brings it back" held_detection

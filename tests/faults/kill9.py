@@ -38,10 +38,10 @@ def missing(announced, restored):
 
 
 def hold(suit, daemon):
-    """The suit pauses, and the daemon takes what was on its way."""
+    """The suit pauses, and the daemon takes what was on its way and writes it down."""
     suit.running.clear()
     before, taken = None, daemon.pose_time()
-    while taken != before:
+    while taken != before or daemon.get("status")["journal"]["lag_entries"] > 0:
         time.sleep(0.03)
         before, taken = taken, daemon.pose_time()
 

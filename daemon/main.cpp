@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -29,7 +27,6 @@ constexpr const char* kFooter =
 constexpr int kLooksAPeriod = 4;    // of the watchdog's
 constexpr int kSolverPeriods = 12;  // that the solver may have work and not move: two minutes
 constexpr double kLongS = 120.0;    // at one entry, where optimising takes seconds
-constexpr std::chrono::minutes kTrimPeriod{1};
 
 struct Arguments {
   std::string config_path;
@@ -86,7 +83,6 @@ int run(const Arguments& arguments, const Config& config) {
   // systemd hears of us as long as detection and solver get on, not as long as this thread does.
   Watchdog watchdog(daemon.pulse(), daemon.solver_progress(), kLooksAPeriod * kSolverPeriods);
   bool is_long = false;
-  auto trim_due = std::chrono::steady_clock::now() + kTrimPeriod;
   const auto tick = [&] {
     const bool was_stuck = watchdog.solver_is_stuck();
     if (watchdog.look(daemon.pulse(), daemon.solver_progress())) notify_service_manager("WATCHDOG=1");
@@ -94,12 +90,6 @@ int run(const Arguments& arguments, const Config& config) {
       spdlog::critical("the solver has work and does not move; the watchdog is not fed any more");
     if (const bool was_long = std::exchange(is_long, daemon.solver_at_entry_s() > kLongS); is_long && !was_long)
       spdlog::warn("the solver has been at one entry for {:.0f} s; the map waits for it, nothing is lost", kLongS);
-    // An optimisation takes tens of megabytes for a second; small blocks that stay come to lie between the holes it
-    // leaves, which after hours were two thirds of the heap. (Fixed limits of mallopt() cost a quarter of its time.)
-    if (const auto now = std::chrono::steady_clock::now(); now >= trim_due) {
-      ::malloc_trim(0);
-      trim_due = now + kTrimPeriod;
-    }
     daemon.ask_for_pulse();
     notify_service_manager("STATUS=" + daemon.summary());
   };

@@ -163,6 +163,48 @@ def loss(packets, chance):
     return kept
 
 
+def long_losses(packets, chance):
+    """A third is lost in bursts of a third of a second, amid gestures too."""
+    kept, lost_until = [], 0.0
+    for p in packets:
+        if p.time_s > lost_until + 2 / 3:
+            lost_until = p.time_s + chance.uniform(0.2, 0.45)
+        if p.time_s >= lost_until:
+            kept.append(p)
+    return kept
+
+
+def clock_back(packets, chance):
+    """The suit's clock is set back by an hour; its counter goes on."""
+    for p in packets[after(packets, chance.uniform(0.3, 0.8)) :]:
+        p.time_code -= 3600000
+    return packets
+
+
+def rate_change(packets, chance):
+    """MVN streams at half the rate at first, then at the whole."""
+    k, kept, counter = after(packets, chance.uniform(0.3, 0.7)), [], 0
+    for n, p in enumerate(packets):
+        if p.type != b"02":
+            kept.append(p)
+        elif n >= k or p.counter % 2 == 0:
+            p.counter = counter = counter + 1
+            kept.append(p)
+    return kept
+
+
+def fewer_segments(packets, chance):
+    """For half a second now and then the sender leaves out the last three segments."""
+    begins = [packets[0].time_s + t for t in range(5, 1000, 20)]
+    for p in packets:
+        if p.type == b"02" and any(t <= p.time_s < t + 0.5 for t in begins):
+            del p.data[len(p.data) - 3 * 32 :]
+            p.data[p.at + 11] = p.data[p.at + 17] = 20
+            for at, size in ((16, len(p.data) - 14), (p.at - 4, len(p.data) - p.at + 8), (p.at + 22, len(p.data) - p.at - 24)):
+                struct.pack_into(">H", p.data, at, size)
+    return packets
+
+
 def reset(packets, chance):
     return moved_from(packets, after(packets, chance.uniform(0.3, 0.8)), chance.uniform(-3, 3), False)
 
@@ -211,13 +253,17 @@ def silence(packets, chance, length_s=2.0):
     return [p for p in packets if not packets[k].time_s <= p.time_s < packets[k].time_s + length_s]
 
 
-def pause(packets, chance):
+def pause(packets, chance, length_s=120):
     """The sender holds, counter and all, while the wearer stands; then it goes on."""
     k = after(packets, chance.uniform(0.3, 0.8))
     for p in packets[k:]:
-        p.time_s += 120.0
-        p.time_code += 120000
+        p.time_s += length_s
+        p.time_code += 1000 * length_s
     return packets
+
+
+def hour_pause(packets, chance):
+    return pause(packets, chance, 3600)
 
 
 def other_sender(packets, chance, character=0):
@@ -243,6 +289,11 @@ FAULTS = {
     "loss": (loss, False, None),
     "silence": (silence, False, None),
     "pause": (pause, True, None),
+    "hour_pause": (hour_pause, True, None),
+    "long_losses": (long_losses, False, None),
+    "clock_back": (clock_back, True, None),
+    "rate_change": (rate_change, False, None),
+    "fewer_segments": (fewer_segments, False, None),
     "reset": (reset, True, None),
     "three_resets": (three_resets, True, None),
     "restart": (restart, True, None),

@@ -41,7 +41,7 @@ def hold(suit, daemon):
     """The suit pauses, and the daemon takes what was on its way and writes it down."""
     suit.running.clear()
     before, taken = None, daemon.pose_time()
-    while taken != before or daemon.get("status")["journal"]["lag_entries"] > 0:
+    while taken != before or daemon.get("status")["journal"]["waiting_entries"] > 0:
         time.sleep(0.03)
         before, taken = taken, daemon.pose_time()
 

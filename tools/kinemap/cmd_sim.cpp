@@ -29,6 +29,7 @@ struct Options {
   bool json = false;
   // CLI11 2.1 knows no std::optional of our kind here: 0 stands for "drawn from the seed" and is refused as a value.
   int rooms = 0, rounds = 0;
+  std::uint64_t wearer_seed = 0;
   double stature_m = 0.0, closure_spacing_m = 0.0, packet_loss = -1.0;
 };
 
@@ -41,6 +42,7 @@ sim::SimOptions sim_options(const Options& options) {
               : options.shell == "l"       ? sim::Shell::LShape
                                            : sim::Shell::Auto;
   if (options.room_size.size() == 2) sim.room_size = {options.room_size[0], options.room_size[1]};
+  if (options.wearer_seed) sim.wearer_seed = options.wearer_seed;
   if (options.rooms) sim.rooms = options.rooms;
   if (options.rounds) sim.rounds = options.rounds;
   if (options.stature_m > 0.0) sim.stature_m = options.stature_m;
@@ -139,6 +141,10 @@ void add_where_to(CLI::App& command, Options& options) {
 
 void add_what(CLI::App& command, Options& options) {
   command.add_option("--seed", options.sim.seed, "All that is not given below is drawn from it")->capture_default_str();
+  command
+      .add_option("--wearer-seed", options.wearer_seed,
+                  "Another wearer in the same building, drawn from this seed; 0: of --seed")
+      ->capture_default_str();
   command.add_option("--drift", options.drift, "How bad the suit is: good, default (a 2015 office) or bad")
       ->capture_default_str()
       ->check(CLI::IsMember({"good", "default", "bad"}));

@@ -29,6 +29,7 @@ enum class Format : std::uint8_t { Pcap, Mvnx };
 /// What to simulate. Everything that is not given is drawn from the seed.
 struct SimOptions {
   std::uint64_t seed = 1;
+  std::optional<std::uint64_t> wearer_seed;  ///< another wearer in the same building; unset: of `seed`
   Severity drift = Severity::Default;
   std::optional<int> rooms;  ///< 1–3
   Shell shell = Shell::Auto;

@@ -23,6 +23,12 @@ Wearer make_wearer(const SimOptions& options, const DriftColumn& column, Random&
   return w;
 }
 
+/// For whom the building is furnished, whoever comes.
+Wearer usual_wearer(const SimOptions& options, const DriftColumn& column) {
+  Random random(options.seed, 2);
+  return make_wearer(options, column, random);
+}
+
 Reach reach_of(const Wearer& w) {
   const double h = w.body.stature;
   return {(w.palm ? 1.0 : 1.07) * h, 0.26 * h - (w.palm ? 0.09 : 0.0)};
@@ -65,12 +71,12 @@ Session::Session(const SimOptions& options)
     : options_(options),
       column_(column_of(options.drift)),
       building_random_(options.seed, 1),
-      wearer_random_(options.seed, 2),
+      wearer_random_(options.wearer_seed.value_or(options.seed), 2),
       script_random_(options.seed, 3),
       body_random_(options.seed, 4),
       suit_random_(options.seed, 5),
       wearer_(make_wearer(options, column_, wearer_random_)),
-      building_(make_building(options, reach_of(wearer_), building_random_)),
+      building_(make_building(options, reach_of(usual_wearer(options, column_)), building_random_)),
       script_(write_script(options, building_, wearer_, script_random_)),
       gait_(make_gait(script_.score, wearer_.body)) {
   performer_ = std::make_unique<Performer>(script_.score, gait_, wearer_, body_random_);

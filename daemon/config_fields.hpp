@@ -234,6 +234,7 @@ void fields(V& v, MapperConfig::Walls& c) {
 
 template <class V>
 void fields(V& v, MapperConfig::Association& c) {
+  v.number("doubt", c.doubt, Range{"1", 1, 10});
   v.number("gate_sigma", c.gate_sigma, Range{"1", 0.1, 100});
   v.number("position_sigma_m", c.position_sigma_m, Range{"m", 0.0001, 10});
   v.number("heading_sigma_rad", c.heading_sigma_rad, Range{"rad", 0.0001, 3.1416});

@@ -166,6 +166,14 @@ std::optional<std::size_t> last_visit(const MapState& state, std::size_t landmar
   return std::nullopt;
 }
 
+Interval both(const Interval& a, const Interval& b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+
+/// What two visits to one wall would share along it, and do not, m; ≤ 0 where they share enough.
+double missing_overlap(const Interval& a, const Interval& b) {
+  const double shared = std::min(a.hi, b.hi) - std::max(a.lo, b.lo);
+  return kOverlap * std::min(a.hi - a.lo, b.hi - b.lo) - shared;
+}
+
 /// Walls that continue each other are told apart by where along them they were touched: squared sigmas, nullopt when
 /// too far apart.
 std::optional<double> along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a,
@@ -175,8 +183,7 @@ std::optional<double> along_wall_distance(const MapState& state, const graph::Ma
   if (!ia || !ib || !visit_a || !visit_b) return 0.0;
   const WallFrame fa(state.graph.landmarks[a]), fb(state.graph.landmarks[b]);
   const double s0 = fb.along(fa.point(ia->lo)), s1 = fb.along(fa.point(ia->hi));
-  const double shared = std::min(std::max(s0, s1), ib->hi) - std::max(std::min(s0, s1), ib->lo);
-  const double missing = kOverlap * std::min(std::abs(s1 - s0), ib->hi - ib->lo) - shared;
+  const double missing = missing_overlap({std::min(s0, s1), std::max(s0, s1)}, *ib);
   if (missing <= 0.0) return 0.0;
   if (missing > kMaxMissing) return std::nullopt;
   return squared(missing) / (squared(kAlongSigma) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
@@ -250,10 +257,23 @@ std::optional<Interval> contact_interval(const MapState& state, std::size_t wall
     if (visit.landmark != wall) continue;
     const auto touched = contact_interval(state, visit, frame);
     if (!touched) continue;
-    if (!out) out = touched;
-    out->lo = std::min(out->lo, touched->lo), out->hi = std::max(out->hi, touched->hi);
+    out = out ? both(*out, *touched) : *touched;
   }
   return out;
+}
+
+bool touched_elsewhere(const MapState& state, std::size_t visit) {
+  const std::size_t wall = state.observations[visit].landmark;
+  if (state.graph.landmarks[wall].kind != LandmarkKind::Wall) return false;
+  const WallFrame frame(state.graph.landmarks[wall]);
+  const auto here = contact_interval(state, state.observations[visit], frame);
+  std::optional<Interval> others;
+  for (std::size_t v = 0; v < state.observations.size(); ++v) {
+    if (v == visit || state.observations[v].landmark != wall) continue;
+    const auto touched = contact_interval(state, state.observations[v], frame);
+    if (touched) others = others ? both(*others, *touched) : *touched;
+  }
+  return here && others && missing_overlap(*here, *others) > kMaxMissing;
 }
 
 std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,
@@ -275,12 +295,14 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     const Eigen::MatrixXd j = jacobian(d, a, b);
     Eigen::MatrixXd s = j * marginals.joint(pair) * j.transpose();
     s.diagonal() += d.noise.cwiseAbs2();
+    s *= squared(config.doubt);
     Candidate candidate{other, d.quarter_turns, e.dot(s.ldlt().solve(e)), static_cast<int>(e.size()),
                         evidence(d, e, s, config.look_alike_share)};
     if (a.kind == LandmarkKind::Wall) {
       const auto along = along_wall_distance(state, marginals, newcomer, other);
       if (!along) continue;
-      candidate.distance += *along, candidate.evidence -= *along, ++candidate.dimensions;
+      const double distance = *along / squared(config.doubt);
+      candidate.distance += distance, candidate.evidence -= distance, ++candidate.dimensions;
     }
     if (candidate.distance <= gate(config.gate_sigma, candidate.dimensions)) out.push_back(candidate);
   }

@@ -37,6 +37,10 @@ std::size_t split(MapState& state, std::size_t visit);
 double variance_along(const MapState& state, const graph::Marginals& marginals, std::size_t i, std::size_t j,
                       const Eigen::Vector3d& axis);
 
+/// Whether visit `visit` of `state.observations` is to a wall that its other visits touched along another stretch, so
+/// that it would be no candidate for it now: walls of two rooms that continue each other, and drift has been corrected.
+bool touched_elsewhere(const MapState& state, std::size_t visit);
+
 /// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma`
 /// (Wilson–Hilferty).
 double gate(double sigma, int dimensions);

@@ -139,7 +139,7 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
   bool any = false;
   const double most = config_.association.free_space_most;
   double merged = free_space_cost(state, nullptr, most);
-  for (std::size_t v = 0; v < state.observations.size(); ++v) {
+  for (std::size_t v = state.observations.size(); v-- > 0;) {
     if (enough && enough()) break;
     if (state.observations[v].key_pose < state.graph.first_free_pose) continue;  // settled
     if (visits_of(state, state.observations[v].landmark).size() < 2) continue;
@@ -148,7 +148,7 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
     if (!optimise(trial, config_.solver.closure_iterations)) continue;
     double relief = merged + 2.0 * (graph::cost(state.graph) - trial.summary.last_cost);
     if (relief >= config_.association.min_relief) relief -= free_space_cost(trial, nullptr, most);
-    if (relief < config_.association.min_relief) continue;
+    if (relief < config_.association.min_relief && !touched_elsewhere(state, v)) continue;
     contradicted_.push_back(ordered(alone, state.observations[v].landmark));
     state = std::move(trial);
     merged = free_space_cost(state, nullptr, most);

@@ -68,7 +68,11 @@ struct MapperConfig {
   } walls;
 
   struct Association {
-    double gate_sigma = 4.5;  ///< candidates: Mahalanobis distance of the relative marginal, as a one-dimensional sigma
+    /// How good this suit, its wearer and the building's metal are is not known when the first loops close, and a
+    /// covariance that is too narrow refuses those that matter most. So all sigmas of a difference are taken so many
+    /// times wider than the graph says.
+    double doubt = 2.0;
+    double gate_sigma = 3.5;  ///< candidates: Mahalanobis distance of that difference, as a one-dimensional sigma
     double position_sigma_m = 0.08;  ///< what two traces of one object differ by beyond the graph's covariance
     double heading_sigma_rad = 0.06;
     double size_sigma_m = 0.06;

@@ -23,6 +23,8 @@ constexpr Lever kLevers[] = {
      R"({"mapper": {"hand": {"contact_correlation_s": 0.001}}})"},
     {"no robust losses", "contacts and seats that do not fit pull with all their weight",
      R"({"mapper": {"hand": {"loss_scale": 1000}, "seats": {"loss_scale": 1000}}})"},
+    {"no doubt", "a difference is judged as if the graph's covariance were true",
+     R"({"mapper": {"association": {"doubt": 1, "gate_sigma": 4.5}}})"},
     {"no free space", "that nobody walks through things counts neither for nor against a closure",
      R"({"mapper": {"association": {"free_space_most": 0}}})"},
     {"closures never refused", "a closure stays however much it costs",

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace kinemap {
 namespace {
 
@@ -35,6 +37,57 @@ MapState seats_taken_for_one(const std::vector<double>& apart) {
     ++state.landmarks[0].observations;
   }
   return state;
+}
+
+/// A wall along the x axis that was touched once over each of the stretches, by somebody south of it whose odometry is
+/// good to a millimetre.
+MapState wall_touched_along(const std::vector<Interval>& stretches) {
+  MapState state;
+  graph::Landmark wall;
+  wall.x = {-0.5 * std::numbers::pi, 0.0};
+  state.graph.landmarks = {wall};
+  state.landmarks = {{1, 0, 0.0, 0.0, 0.0}};
+  state.graph.touch_points.emplace_back();
+  for (const Interval& stretch : stretches) {
+    ObservationRecord visit;
+    visit.key_pose = static_cast<KeyPoseId>(state.graph.poses.size());
+    visit.first_contact = state.graph.contacts.size();
+    for (double x = stretch.lo; x <= stretch.hi; x += 0.1) {
+      const Pose T_map_pelvis = level_pose({x, -0.5, 0.9}, 0.0);
+      const std::size_t k = state.graph.poses.size();
+      if (k == 0)
+        state.graph.priors.push_back({0, T_map_pelvis, graph::Matrix6::Identity() * 1e3});
+      else
+        state.graph.between.push_back(
+            {k - 1, k, state.graph.poses.back().inverse() * T_map_pelvis, graph::Matrix6::Identity() * 1e3, {}});
+      state.graph.poses.push_back(T_map_pelvis);
+      graph::ContactFactor contact;
+      contact.i = k;
+      contact.T_i_hand = level_pose({0.0, 0.5, 0.3}, 0.0);
+      state.graph.contacts.push_back(contact);
+    }
+    visit.contacts = state.graph.contacts.size() - visit.first_contact;
+    state.observations.push_back(visit);
+    ++state.landmarks[0].observations;
+  }
+  return state;
+}
+
+TEST(Candidates, AreThoseWithinWhatASuitTwiceAsBadWouldDrift) {
+  constexpr double kDrift = 0.2, kApart = 0.7;  // m: 3 σ with what else two sittings differ by
+  MapState state = seats_taken_for_one({kApart});
+  state.graph.between[0].sqrt_information.diagonal().head<2>().setConstant(1.0 / kDrift);
+  const std::size_t newcomer = split(state, 1);
+  MapperConfig config;
+  ASSERT_TRUE(LoopCloser{config}.settle(state, 30));
+  const auto marginals = graph::Marginals::compute(state.graph);
+  ASSERT_TRUE(marginals);
+  for (const double doubt : {1.0, 2.0}) {
+    config.association.doubt = doubt;
+    const auto found = candidates(state, newcomer, *marginals, config.association);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].evidence > 0.0, doubt > 1.0) << found[0].evidence;
+  }
 }
 
 TEST(Split, TheVisitTakesItsFactorsAndTimesWithIt) {
@@ -84,6 +137,24 @@ TEST(Revise, LeavesAVisitThatOnlyDriftKeepsApart) {
   ASSERT_TRUE(closer.settle(state, 30));
   EXPECT_FALSE(closer.revise(state));
   EXPECT_EQ(state.graph.landmarks.size(), 1U);
+}
+
+TEST(Revise, TakesBackTheVisitThatTouchedAnotherStretchOfThePlane) {
+  MapState state = wall_touched_along({{0.0, 3.0}, {1.0, 2.0}, {4.0, 6.0}});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_TRUE(closer.revise(state));
+  ASSERT_EQ(state.graph.landmarks.size(), 2U);
+  EXPECT_EQ(state.observations[0].landmark, 0U);
+  EXPECT_EQ(state.observations[1].landmark, 0U);
+  EXPECT_EQ(state.observations[2].landmark, 1U);
+}
+
+TEST(Revise, LeavesAWallThatVisitsShareInPart) {
+  MapState state = wall_touched_along({{0.0, 3.0}, {2.0, 6.0}});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_FALSE(closer.revise(state));
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ class Builder {
     g_.scalars = {kRate, 0.4, 0.4 + kRate * kSeconds};
     const auto north = [&](std::size_t i) { return i < o_.poses / 2 ? std::size_t{1} : std::size_t{2}; };
     const auto suit = [&](std::size_t i, std::size_t north_of) {
-      return (level_pose({}, n(0.02) - g_.scalars[north_of]).q * g_.poses[i].q).normalized();
+      return (level_pose(Eigen::Vector3d::Zero(), n(0.02) - g_.scalars[north_of]).q * g_.poses[i].q).normalized();
     };
     for (std::size_t i = 0; i < o_.poses; ++i) {
       const std::size_t k = north(i), before = i > 0 ? i - 1 : 0;

@@ -37,7 +37,7 @@ double heading_error(const graph::Graph& graph, std::size_t i) {
 void tell_heading(graph::Graph& graph, std::size_t i) {
   graph::PriorFactor prior;
   prior.i = i;
-  prior.T_map_i = {graph.poses[i].p, level_pose({}, 0.1 * static_cast<double>(i)).q};
+  prior.T_map_i = {graph.poses[i].p, level_pose(Eigen::Vector3d::Zero(), 0.1 * static_cast<double>(i)).q};
   prior.sqrt_information = graph::Matrix6::Zero();
   prior.sqrt_information(5, 5) = 1.0 / (0.5 * kDegree);
   graph.priors.push_back(prior);

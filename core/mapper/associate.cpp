@@ -166,7 +166,19 @@ std::optional<std::size_t> last_visit(const MapState& state, std::size_t landmar
   return std::nullopt;
 }
 
-Interval both(const Interval& a, const Interval& b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+/// Where along the wall its visits touched it, all but `except`.
+std::optional<Interval> touched_by_visits(const MapState& state, std::size_t wall, std::optional<std::size_t> except) {
+  const WallFrame frame(state.graph.landmarks[wall]);
+  std::optional<Interval> out;
+  for (std::size_t v = 0; v < state.observations.size(); ++v) {
+    if (v == except || state.observations[v].landmark != wall) continue;
+    const auto touched = contact_interval(state, state.observations[v], frame);
+    if (!touched) continue;
+    if (!out) out = touched;
+    out->lo = std::min(out->lo, touched->lo), out->hi = std::max(out->hi, touched->hi);
+  }
+  return out;
+}
 
 /// What two visits to one wall would share along it, and do not, m; ≤ 0 where they share enough.
 double missing_overlap(const Interval& a, const Interval& b) {
@@ -174,10 +186,10 @@ double missing_overlap(const Interval& a, const Interval& b) {
   return kOverlap * std::min(a.hi - a.lo, b.hi - b.lo) - shared;
 }
 
-/// Walls that continue each other are told apart by where along them they were touched: squared sigmas, nullopt when
-/// too far apart.
+/// Walls that continue each other are told apart by where along them they were touched: squared sigmas, each `doubt`
+/// times as wide; nullopt when too far apart.
 std::optional<double> along_wall_distance(const MapState& state, const graph::Marginals& marginals, std::size_t a,
-                                          std::size_t b) {
+                                          std::size_t b, double doubt) {
   const auto ia = contact_interval(state, a), ib = contact_interval(state, b);
   const auto visit_a = last_visit(state, a), visit_b = last_visit(state, b);
   if (!ia || !ib || !visit_a || !visit_b) return 0.0;
@@ -186,7 +198,8 @@ std::optional<double> along_wall_distance(const MapState& state, const graph::Ma
   const double missing = missing_overlap({std::min(s0, s1), std::max(s0, s1)}, *ib);
   if (missing <= 0.0) return 0.0;
   if (missing > kMaxMissing) return std::nullopt;
-  return squared(missing) / (squared(kAlongSigma) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis));
+  const double variance = squared(kAlongSigma) + variance_along(state, marginals, *visit_a, *visit_b, fb.axis);
+  return squared(missing) / (squared(doubt) * variance);
 }
 
 Edge turned(Edge edge, int quarter_turns) {
@@ -251,28 +264,15 @@ std::optional<Interval> contact_interval(const MapState& state, const Observatio
 }
 
 std::optional<Interval> contact_interval(const MapState& state, std::size_t wall) {
-  const WallFrame frame(state.graph.landmarks[wall]);
-  std::optional<Interval> out;
-  for (const auto& visit : state.observations) {
-    if (visit.landmark != wall) continue;
-    const auto touched = contact_interval(state, visit, frame);
-    if (!touched) continue;
-    out = out ? both(*out, *touched) : *touched;
-  }
-  return out;
+  return touched_by_visits(state, wall, std::nullopt);
 }
 
 bool touched_elsewhere(const MapState& state, std::size_t visit) {
-  const std::size_t wall = state.observations[visit].landmark;
-  if (state.graph.landmarks[wall].kind != LandmarkKind::Wall) return false;
-  const WallFrame frame(state.graph.landmarks[wall]);
-  const auto here = contact_interval(state, state.observations[visit], frame);
-  std::optional<Interval> others;
-  for (std::size_t v = 0; v < state.observations.size(); ++v) {
-    if (v == visit || state.observations[v].landmark != wall) continue;
-    const auto touched = contact_interval(state, state.observations[v], frame);
-    if (touched) others = others ? both(*others, *touched) : *touched;
-  }
+  const auto& record = state.observations[visit];
+  const Landmark& landmark = state.graph.landmarks[record.landmark];
+  if (landmark.kind != LandmarkKind::Wall) return false;
+  const auto here = contact_interval(state, record, WallFrame(landmark));
+  const auto others = touched_by_visits(state, record.landmark, visit);
   return here && others && missing_overlap(*here, *others) > kMaxMissing;
 }
 
@@ -299,10 +299,9 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     Candidate candidate{other, d.quarter_turns, e.dot(s.ldlt().solve(e)), static_cast<int>(e.size()),
                         evidence(d, e, s, config.look_alike_share)};
     if (a.kind == LandmarkKind::Wall) {
-      const auto along = along_wall_distance(state, marginals, newcomer, other);
+      const auto along = along_wall_distance(state, marginals, newcomer, other, config.doubt);
       if (!along) continue;
-      const double distance = *along / squared(config.doubt);
-      candidate.distance += distance, candidate.evidence -= distance, ++candidate.dimensions;
+      candidate.distance += *along, candidate.evidence -= *along, ++candidate.dimensions;
     }
     if (candidate.distance <= gate(config.gate_sigma, candidate.dimensions)) out.push_back(candidate);
   }

@@ -184,21 +184,34 @@ TEST(Tracker, AnotherOneGoesOnInTheMiddleOfAGesture) {
   }
 }
 
+std::vector<SuitFrame> gesture_of_ten_seconds() {
+  return perform(Puppet{}, between_standing(10.0, [](double t) {
+                   Figure f = standing();
+                   f.arm = {on_hip(), drawing(t)};
+                   return f;
+                 }));
+}
+
+/// From `time_s` on the suit's world is another one, and nobody saw the wearer for `silence_s` before it. The first
+/// frame in it.
+std::vector<SuitFrame>::iterator move_world(std::vector<SuitFrame>& frames, double time_s, const Pose& T_new_old,
+                                            double silence_s) {
+  const auto first =
+      std::find_if(frames.begin(), frames.end(), [=](const SuitFrame& frame) { return frame.time_s >= time_s; });
+  first->discontinuity = true;
+  for (auto frame = first; frame != frames.end(); ++frame) {
+    frame->time_s += silence_s;
+    for (Pose& segment : frame->segments) segment = T_new_old * segment;
+  }
+  return first;
+}
+
 TEST(Tracker, AGestureGoesOnWhenTheSuitsWorldJumpsFromOneFrameToTheNext) {
-  const Puppet puppet;
-  auto frames = perform(puppet, between_standing(10.0, [](double t) {
-                          Figure f = standing();
-                          f.arm = {on_hip(), drawing(t)};
-                          return f;
-                        }));
+  auto frames = gesture_of_ten_seconds();
   const Outcome whole = track(frames);
   ASSERT_EQ(whole.traces.size(), 1u);
-  const auto jumped =
-      std::find_if(frames.begin(), frames.end(), [](const SuitFrame& frame) { return frame.time_s >= 6.0; });
   const Pose T_new_old = level_pose({5, -3, 0}, 2.0);
-  jumped->discontinuity = true;
-  for (auto frame = jumped; frame != frames.end(); ++frame)
-    for (Pose& segment : frame->segments) segment = T_new_old * segment;
+  const auto jumped = move_world(frames, 6.0, T_new_old, 0.0);
   const Outcome outcome = track(frames);
   ASSERT_EQ(outcome.traces.size(), 1u);
   EXPECT_EQ(outcome.traces[0].begin_s, whole.traces[0].begin_s);
@@ -217,22 +230,10 @@ TEST(Tracker, AGestureGoesOnWhenTheSuitsWorldJumpsFromOneFrameToTheNext) {
 }
 
 TEST(Tracker, AGestureGoesOnAfterASilenceWhereTheHandHasWaited) {
-  const Puppet puppet;
-  auto frames = perform(puppet, between_standing(10.0, [](double t) {
-                          Figure f = standing();
-                          f.arm = {on_hip(), drawing(t)};
-                          return f;
-                        }));
+  auto frames = gesture_of_ten_seconds();
   const Outcome whole = track(frames);
   ASSERT_EQ(whole.traces.size(), 1u);
-  const auto restarted =
-      std::find_if(frames.begin(), frames.end(), [](const SuitFrame& frame) { return frame.time_s >= 6.0; });
-  const Pose T_new_old = level_pose({1, -0.5, 0}, -2.0);
-  restarted->discontinuity = true;
-  for (auto frame = restarted; frame != frames.end(); ++frame) {
-    frame->time_s += 1.5;
-    for (Pose& segment : frame->segments) segment = T_new_old * segment;
-  }
+  move_world(frames, 6.0, level_pose({1, -0.5, 0}, -2.0), 1.5);
   const Outcome outcome = track(frames);
   ASSERT_EQ(outcome.traces.size(), 1u);
   EXPECT_NEAR(outcome.traces[0].end_s, whole.traces[0].end_s + 1.5, 1e-9);

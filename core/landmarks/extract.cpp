@@ -27,12 +27,14 @@ constexpr double kMostOfIt = 0.75;      // of the contacts lie on sides where si
 constexpr double kLongestPart = 2.5;    // m: longer is a wall, whatever else the hand did
 constexpr double kNarrow = 0.3;         // m: of open rectangles, so little may be the hand's way to a side and from it
 constexpr double kSecondChoice = 0.8;   // part of the trace that the surface that holds less of it must still hold
+constexpr double kFar = 0.15;           // m: farther off what was drawn is a lift-off or the way there
 
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
   bool round_wearer = false;    ///< a level contour with the wearer inside: walls
   bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
+  double misfit = HUGE_VAL;     ///< of a screen: mean square distance of the whole trace from its contour, m²
 };
 
 /// Members of the surface in its plane: first axis `u`, second `v`, from `origin`.
@@ -68,7 +70,6 @@ bool wearer_inside(std::span<const TracePoint> points, const Surface& surface, c
 
 /// Mean square distance of the contacts from the sides that were drawn, m²; where the contour is open a side goes on.
 double contour_misfit(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
-  constexpr double kFar = 0.15;  // m: farther off is a lift-off or the way there
   double sum = 0.0;
   for (const Eigen::Vector2d& p : flat) {
     const Eigen::Vector2d local = to_local(fit, p);
@@ -139,6 +140,19 @@ bool drawn_in_strokes(std::span<const Eigen::Vector2d> flat, const RectangleFit&
          std::max(fit.size[0], fit.size[1]) < kLongestPart && fit.size[1] > 0.25 * fit.size[0];
 }
 
+/// Mean square distance of the whole trace from a contour on an upright surface, m²: `flat` are the surface's members
+/// in its plane.
+double screen_misfit(std::span<const TracePoint> points, const Surface& surface, std::span<const Eigen::Vector2d> flat,
+                     const RectangleFit& fit) {
+  const auto members = static_cast<double>(flat.size()), all = static_cast<double>(points.size());
+  double across = 0.0;
+  for (const std::size_t i : surface.members) {
+    const double off = surface.normal.dot(points[i].p) - surface.offset;
+    across += off * off;
+  }
+  return (across + members * contour_misfit(flat, fit) + (all - members) * kFar * kFar) / all;
+}
+
 Attempt screen(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
   const double heading = std::atan2(surface.normal.y(), surface.normal.x());
   const Eigen::Vector3d u(-std::sin(heading), std::cos(heading), 0.0);
@@ -167,12 +181,13 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
   seen.contacts = surface.members;
   seen.labels = fit->labels;
   seen.closed = fit->closed;
-  return {seen, {}};
+  return {seen, {}, false, false, screen_misfit(points, surface, flat, *fit)};
 }
 
-/// A straight line at one height, as low as tables are: one edge of a table as likely as a wall.
+/// A straight line at one height (as level as the arm of a bad suit keeps it), as low as tables are: one edge of a
+/// table as likely as a wall.
 bool may_be_table_edge(std::span<const TracePoint> points, const Surface& surface, double floor_z, double length) {
-  constexpr double kHighest = 0.95, kLongest = 2.5, kSpread = 0.04;  // m
+  constexpr double kHighest = 0.95, kLongest = 2.5, kSpread = 0.08;  // m
   std::vector<double> heights, off;
   for (const std::size_t i : surface.members) heights.push_back(points[i].p.z() - floor_z);
   const double height = median(heights);
@@ -214,6 +229,22 @@ Attempt classify(std::span<const TracePoint> points, const Surface& surface, dou
   if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
   auto contour = screen(points, surface, config);
   return contour.observation || contour.part_of_screen ? contour : wall(points, surface, floor_z, config);
+}
+
+/// A screen whose contour metal has bent so far that it lies on no one surface, or does not close, or fits clearly
+/// better when it is straightened: the screen that it is without the turn of the heading.
+std::optional<Observation> bent_screen(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  const auto [low, high] =
+      std::minmax_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.p.z() < b.p.z(); });
+  if (points.size() < 8 || high->p.z() - low->p.z() < config.rectangle_min_side_m) return std::nullopt;
+  const auto attempt = [&](std::span<const TracePoint> tried) {
+    for (const Surface& surface : find_surfaces(tried, config))
+      if (surface.kind == Surface::Kind::Upright && !leans(tried, surface, config.max_slant_rad))
+        return screen(tried, surface, config);
+    return Attempt{};
+  };
+  const double rate = heading_rate(points, [&](std::span<const TracePoint> tried) { return attempt(tried).misfit; });
+  return rate == 0.0 ? std::nullopt : attempt(unbent(points, rate)).observation;
 }
 
 void shift(Observation& observation, std::size_t by) {
@@ -358,13 +389,22 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
   Extraction out;
   const IndexRange drawn = without_reach(points, config);
   auto main = main_object(points, drawn, floor_z, config);
-  const bool wall = main.observation && !is_rectangle(*main.observation);
-  const PartRule rule = part_rule(config, wall);
-  if (main.observation) {
-    out.observations.push_back(std::move(*main.observation));
-  } else if (drawn.end > drawn.begin) {
-    out.observations = two_objects(points, drawn, floor_z, rule);
+  if (!main.observation && drawn.end > drawn.begin)
+    out.observations = two_objects(points, drawn, floor_z, part_rule(config, false));
+  // Two rectangles are no accident; walls can be cut out of a bent contour.
+  const bool rectangles = main.observation
+                              ? main.observation->landmark.kind == LandmarkKind::Table
+                              : !out.observations.empty() && std::ranges::all_of(out.observations, is_rectangle);
+  if (!rectangles) {
+    if (auto bent = bent_screen(points.subspan(drawn.begin, drawn.end - drawn.begin), config)) {
+      shift(*bent, drawn.begin);
+      out.observations.clear();
+      main.contacts = {bent->contacts.front(), bent->contacts.back() + 1};
+      main.observation = std::move(bent);
+    }
   }
+  const PartRule rule = part_rule(config, main.observation && !is_rectangle(*main.observation));
+  if (main.observation) out.observations.push_back(std::move(*main.observation));
   if (out.observations.size() < 2) {
     extract_leftover(points, {drawn.begin, main.contacts.begin}, false, floor_z, rule, 0, out.observations);
     extract_leftover(points, {main.contacts.end, drawn.end}, true, floor_z, rule, 0, out.observations);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "core/landmarks/extract.hpp"
 #include "tests/core/landmarks/contours.hpp"
 
@@ -16,6 +18,15 @@ std::vector<TracePoint> round_table() {
   auto points = test::trace(corners, {.speed_m_per_s = 0.3, .noise_m = 0.002});
   const Eigen::Vector3d middle(0.8, 0.4, 0.75);
   for (auto& point : points) point.p_body = point.p + 0.4 * (point.p - middle).normalized();
+  return points;
+}
+
+/// A screen of 1.4 m × 0.8 m, drawn by somebody who walks to and fro 0.5 m before it.
+std::vector<TracePoint> along_screen() {
+  auto corners = test::upright_rectangle({1.0, 1.5, 1.3}, -std::numbers::pi / 2.0, 1.4, 0.8);
+  corners.push_back(corners.front());
+  auto points = test::trace(corners, {.speed_m_per_s = 0.3, .noise_m = 0.002});
+  for (auto& point : points) point.p_body = {point.p.x(), point.p.y() - 0.5, 1.0};
   return points;
 }
 
@@ -39,6 +50,31 @@ TEST(Unbend, AContourDrawnWhileTheHeadingTurnedIsARectangleOfTheRightSize) {
     EXPECT_NEAR(std::max(table.x[4], table.x[5]), 1.6, 0.03) << rate;
     EXPECT_NEAR(std::min(table.x[4], table.x[5]), 0.8, 0.03) << rate;
   }
+}
+
+TEST(Unbend, AScreenDrawnWhileTheHeadingTurnedIsNoWallAndNoMystery) {
+  for (const double rate : {-0.04, 0.03, 0.04}) {
+    const auto bent = unbent(along_screen(), -rate);
+    const auto found = extract_landmarks(bent, 0.0, {});
+    ASSERT_EQ(found.observations.size(), 1U) << rate << found.reason;
+    const auto& screen = found.observations[0].landmark;
+    ASSERT_EQ(screen.kind, graph::LandmarkKind::Screen) << rate;
+    EXPECT_NEAR(screen.x[4], 1.4, 0.03) << rate;
+    EXPECT_NEAR(screen.x[5], 0.8, 0.03) << rate;
+    EXPECT_TRUE(found.observations[0].closed);
+  }
+}
+
+TEST(Unbend, WavingAlongTwoWallsIsNoScreen) {
+  // Two walls that meet at 150°, as a bent wall would look, and a hand that goes up and down on them.
+  std::vector<Eigen::Vector3d> path;
+  for (int k = 0; k <= 8; ++k) {
+    const double x = 0.5 * k, y = x < 2.0 ? 1.5 : 1.5 - std::tan(std::numbers::pi / 6.0) * (x - 2.0);
+    path.emplace_back(x, y, k % 2 == 0 ? 1.1 : 1.5);
+  }
+  const auto found = extract_landmarks(test::trace(path, {.noise_m = 0.002}), 0.0, {});
+  EXPECT_EQ(found.observations.size(), 2U) << found.reason;
+  for (const auto& seen : found.observations) EXPECT_EQ(seen.landmark.kind, graph::LandmarkKind::Wall);
 }
 
 TEST(Unbend, WhatIsStraightIsLeftAlone) {

@@ -25,7 +25,11 @@ std::vector<Network> networks(const std::vector<std::string>& texts) {
 /// Makes `socket` the kept one, if there is one and it is bound to where it is wanted; else that one is closed.
 bool take_over(net::ip::udp::socket& socket, const net::ip::udp::endpoint& wanted, int kept) {
   ErrorCode error;
-  if (kept < 0 || socket.assign(wanted.protocol(), kept, error)) return false;
+  if (kept < 0) return false;
+  if (socket.assign(wanted.protocol(), kept, error)) {
+    ::close(kept);
+    return false;
+  }
   if (socket.local_endpoint(error) == wanted) {
     spdlog::info("suit: goes on with the socket of the daemon before, and what came to it meanwhile");
     return true;

@@ -17,8 +17,8 @@ package() {
 }
 
 check() {
-  local room twice=()
-  room=$(mktemp -d)
+  local twice=()
+  room=$(mktemp -d) # not local: the trap runs when the function is over
   trap 'rm -rf "$room"' EXIT
   export CCACHE_DISABLE=1
   for source in "$room/a" "$room/some/where/else"; do
@@ -36,6 +36,7 @@ check() {
   echo "reproducible: both builds gave the same package"
 }
 
+tools/setup.sh >&2
 configure=()
 case ${1-} in
   --check) configure=(-DBUILD_TESTING=OFF) && check ;;

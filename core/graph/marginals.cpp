@@ -13,7 +13,7 @@ namespace kinemap::graph {
 class Marginals::Impl {
  public:
   Impl(Factorisation found, std::size_t poses, std::size_t landmarks)
-      : columns_(std::move(found.columns)), poses_(poses), landmarks_(landmarks), L_(std::move(found.L)) {}
+      : system_(std::move(found)), poses_(poses), landmarks_(landmarks), L_(system_.L()) {}
 
   [[nodiscard]] Eigen::MatrixXd joint(std::span<const Variable> variables) const {
     std::vector<int> wanted;  // scalar columns, stacked
@@ -44,8 +44,8 @@ class Marginals::Impl {
     const std::size_t offset = v.kind == Variable::Kind::Pose       ? 0
                                : v.kind == Variable::Kind::Landmark ? poses_
                                                                     : poses_ + landmarks_;
-    assert(offset + v.index < columns_.size());
-    return columns_[offset + v.index];
+    assert(offset + v.index < system_.columns.size());
+    return system_.columns[offset + v.index];
   }
 
   /// The given columns and all their ancestors in the elimination tree, ascending; `row_of` gets each one's place in
@@ -65,9 +65,9 @@ class Marginals::Impl {
     return path;
   }
 
-  std::vector<ColumnRange> columns_;
+  Factorisation system_;
   std::size_t poses_, landmarks_;
-  Eigen::SparseMatrix<double> L_;
+  const Eigen::SparseMatrix<double>& L_;
 };
 
 std::optional<Marginals> Marginals::compute(const Graph& graph) {

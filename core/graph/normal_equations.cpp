@@ -2,7 +2,6 @@
 #include "core/graph/normal_equations.hpp"
 
 #include <Eigen/OrderingMethods>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -59,7 +58,7 @@ std::vector<ColumnRange> lay_out(const std::vector<int>& sizes, const std::vecto
   return columns;
 }
 
-/// The non-zero blocks of the lower triangle: which there are, and where each lies among the values of a
+/// The non-zero blocks of the upper triangle: which there are, and where each lies among the values of a
 /// column-compressed matrix.
 class BlockPattern {
  public:
@@ -69,7 +68,7 @@ class BlockPattern {
       for (int a = 0; a < block.count; ++a) {
         for (int b = 0; b < block.count; ++b) {
           const VariableId row = block.variables[a], col = block.variables[b];
-          if (columns[row].size > 0 && columns[col].size > 0 && start(row) >= start(col)) keys.push_back(key(row, col));
+          if (columns[row].size > 0 && columns[col].size > 0 && start(row) <= start(col)) keys.push_back(key(row, col));
         }
       }
     }
@@ -78,11 +77,11 @@ class BlockPattern {
     keys_ = std::move(keys);
   }
 
-  /// Lower triangle with zero values (the upper half of diagonal blocks is stored as well, and ignored by who reads
+  /// Upper triangle with zero values (the lower half of diagonal blocks is stored as well, and ignored by who reads
   /// it).
   [[nodiscard]] Eigen::SparseMatrix<double> allocate();
 
-  /// Adds m (rows of variable `row`, columns of `col`, row not before col in the order).
+  /// Adds m (rows of variable `row`, columns of `col`, row not after col in the order).
   template <class Matrix>
   void add(VariableId row, VariableId col, const Matrix& m, double* values) const {
     const auto it = std::lower_bound(keys_.begin(), keys_.end(), key(row, col));
@@ -143,8 +142,6 @@ Eigen::SparseMatrix<double> BlockPattern::allocate() {
   return m;
 }
 
-using Cholesky = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
 /// A pivot this small against its diagonal entry is rounding: the variable is not determined.
 constexpr double kSingularPivot = 1e-12;
 
@@ -174,7 +171,7 @@ std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
   NormalEquations out;
   out.columns = lay_out(sizes, elimination_order(blocks, sizes));
   BlockPattern pattern(blocks, out.columns);
-  out.lower = pattern.allocate();
+  out.upper = pattern.allocate();
   Linearised linearised;
   for (const ResidualBlock& block : blocks) {
     if (!linearised.evaluate(block)) return std::nullopt;
@@ -183,10 +180,10 @@ std::optional<NormalEquations> assemble_normal_equations(const Graph& graph) {
       const auto Ja = linearised.jacobian(a, sizes[block.variables[a]]);
       for (int b = 0; b < block.count; ++b) {
         if (sizes[block.variables[b]] == 0) continue;
-        if (pattern.start(block.variables[a]) < pattern.start(block.variables[b])) continue;
+        if (pattern.start(block.variables[a]) > pattern.start(block.variables[b])) continue;
         const auto Jb = linearised.jacobian(b, sizes[block.variables[b]]);
         const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7> JtJ = Ja.transpose().lazyProduct(Jb);
-        pattern.add(block.variables[a], block.variables[b], JtJ, out.lower.valuePtr());
+        pattern.add(block.variables[a], block.variables[b], JtJ, out.upper.valuePtr());
       }
     }
   }
@@ -197,10 +194,8 @@ std::optional<Factorisation> factorise(const Graph& graph) {
   if (find_fault(graph)) return std::nullopt;
   std::optional<NormalEquations> equations = assemble_normal_equations(graph);
   if (!equations) return std::nullopt;
-  const Cholesky cholesky(equations->lower);
-  if (cholesky.info() != Eigen::Success) return std::nullopt;
-  Factorisation out{std::move(equations->columns), cholesky.matrixL()};
-  if (!regular(out.L, equations->lower)) return std::nullopt;
+  Factorisation out{std::move(equations->columns), std::make_unique<const Cholesky>(equations->upper)};
+  if (out.cholesky->info() != Eigen::Success || !regular(out.L(), equations->upper)) return std::nullopt;
   return out;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/SparseCore>
+#include <Eigen/SparseCholesky>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,17 +20,29 @@ struct ColumnRange {
 };
 
 struct NormalEquations {
-  Eigen::SparseMatrix<double> lower;  ///< lower triangle of P·JᵀJ·Pᵀ, P a fill-reducing order of whole variables
+  Eigen::SparseMatrix<double> upper;  ///< upper triangle of P·JᵀJ·Pᵀ, P a fill-reducing order of whole variables
   std::vector<ColumnRange> columns;   ///< by VariableId, in the permuted order
 };
 
 /// nullopt when a variable has no factor at all or a factor cannot be evaluated. `graph` without fault (see check.hpp).
 std::optional<NormalEquations> assemble_normal_equations(const Graph& graph);
 
+/// Factorises an upper triangle in the order that it has. (Asked to keep the order, Eigen 3.4 still copies the matrix
+/// twice: it compares the ordering with one for another type of index.)
+class Cholesky : public Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Upper> {
+ public:
+  explicit Cholesky(const Eigen::SparseMatrix<double>& upper) {
+    analyzePattern_preordered(upper, false);
+    factorize_preordered<false>(upper);
+  }
+};
+
 /// P·JᵀJ·Pᵀ = L·Lᵀ.
 struct Factorisation {
   std::vector<ColumnRange> columns;  ///< as of NormalEquations
-  Eigen::SparseMatrix<double> L;
+  std::unique_ptr<const Cholesky> cholesky;
+
+  [[nodiscard]] const Eigen::SparseMatrix<double>& L() const { return cholesky->matrixL().nestedExpression(); }
 };
 
 /// nullopt when the graph has a fault or the system is singular (a variable without factors, no gauge).

@@ -22,7 +22,7 @@ std::uint64_t signs(std::uint64_t row) {
 class Probes {
  public:
   explicit Probes(const Factorisation& system)
-      : system_(system), Jtz_(Eigen::MatrixXd::Zero(system.L.cols(), kProbes)) {}
+      : system_(system), Jtz_(Eigen::MatrixXd::Zero(system.L().cols(), kProbes)) {}
 
   void add(const ResidualBlock& block, const Linearised& linearised) {
     for (Eigen::Index row = 0; row < linearised.residuals().size(); ++row) {
@@ -44,7 +44,7 @@ class Probes {
   [[nodiscard]] double squares() const { return squares_; }
   [[nodiscard]] double n() const { return n_; }
   [[nodiscard]] double trace() const {
-    return system_.L.triangularView<Eigen::Lower>().solve(Jtz_).squaredNorm() / kProbes;
+    return system_.L().triangularView<Eigen::Lower>().solve(Jtz_).squaredNorm() / kProbes;
   }
 
  private:

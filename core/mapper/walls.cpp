@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxTrials = 200;  // solutions looked at before rings that are no rooms are broken open
 constexpr double kInside = 0.7;          // part of the places from which its walls were touched that a room contains
 constexpr double kMinLength = 0.2;       // m
-constexpr double kTouchedSigma = 0.08;   // m: the first and the last contact of a hand that comes and goes
+constexpr double kOpenSigma = 2.0;  // m: where nobody touched a wall any farther it may end, or go on through a room
 
 /// For each stretch the one that its head meets.
 using Order = std::vector<std::optional<std::size_t>>;
@@ -152,8 +152,8 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
     const Interval& ends = chain.plane.touched;
     walls.push_back({chain.plane.landmark,
                      chain.landmarks,
-                     {ends.lo, EndKind::Open, {}, kTouchedSigma},
-                     {ends.hi, EndKind::Open, {}, kTouchedSigma}});
+                     {ends.lo, EndKind::Open, {}, kOpenSigma},
+                     {ends.hi, EndKind::Open, {}, kOpenSigma}});
   }
   for (std::size_t a = 0; a < chains.size(); ++a) {
     const auto meets = next[chains[a].last];

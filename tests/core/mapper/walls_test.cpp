@@ -196,7 +196,7 @@ TEST(CutWalls, AnEndThatMeetsNobodyStaysWhereItWasTouched) {
   const auto alone = cut_walls(visit.state, kConfig);
   expect_lengths(alone, {3});
   EXPECT_EQ(alone[0].head.kind, EndKind::Open);
-  EXPECT_GT(alone[0].head.sigma_m, 0.0);
+  EXPECT_GT(alone[0].head.sigma_m, 1.0);  // it may go on
   EXPECT_TRUE(rooms_of(visit).empty());
   const double far = 3 + kConfig.join_max_m + 0.5;  // too far to be prolonged to
   visit.touch({far, 0.3}, {far, 2});

@@ -46,17 +46,19 @@ const functionTexts: Record<string, string> = {
 };
 export const functionText = (name: string) => functionTexts[name] ?? name;
 
-/** What a list shows of an object in a few characters. */
-/** The length of a wall, which is a lower bound where one of its ends was not touched. */
-export function lengthText(object: MapObject, length: string): string {
-  return `${object.ends?.includes("open") ? "≥ " : ""}${length}`;
+/** The length of a wall; where one of its ends was not touched it is a lower bound, and its standard deviation says how far it may go on. */
+export function wallLength(object: MapObject, withSigma: boolean): string {
+  const [length] = object.size!;
+  if (object.ends?.includes("open")) return `≥ ${metres(length)}`;
+  return withSigma ? `${plusMinus(length, object.sigma?.size?.[0])} m` : metres(length);
 }
 
+/** What a list shows of an object in a few characters. */
 export function shortSize(object: MapObject): string {
   if (object.type === "chair") return `${object.pose.position[2].toFixed(2)} m high`;
   if (!object.size) return "";
   const [long, short] = object.size;
-  return object.type === "wall" ? lengthText(object, metres(long)) : `${long.toFixed(2)} × ${short.toFixed(2)} m`;
+  return object.type === "wall" ? wallLength(object, false) : `${long.toFixed(2)} × ${short.toFixed(2)} m`;
 }
 
 /** Rotation about the vertical, rad. */

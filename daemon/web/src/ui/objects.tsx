@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useMemo, useState } from "preact/hooks";
-import { clock, degrees, functionText, heading, lengthText, metres, minus, objectName, plusMinus, shortSize, typePlural } from "../format";
+import { clock, degrees, functionText, heading, metres, minus, objectName, plusMinus, shortSize, typePlural, wallLength } from "../format";
 import { roomAt } from "../geometry";
 import type { MapDocument, MapObject } from "../model";
 import { Icon, typeIcon } from "./icons";
@@ -91,7 +91,7 @@ function sizeRows(object: MapObject): [string, string][] {
   const [sa, sb] = sigma?.size ?? [];
   if (type === "wall")
     return [
-      ["Length", lengthText(object, `${plusMinus(a, sa)} m`)],
+      ["Length", wallLength(object, true)],
       ["Height", object.height_assumed ? `${b.toFixed(2)} m, assumed` : `${plusMinus(b, sb)} m`],
     ];
   const rows: [string, string][] = [

@@ -21,7 +21,7 @@ constexpr double kMinBesideWall = 1.8;  // s: a wall after a wall
 constexpr double kLongerWall = 1.5;     // × wall_min_extent_m, of a wall beside something else
 constexpr double kCutStep = 0.75;       // s between the cuts that are tried in a gesture over two objects
 constexpr double kMostOfAPart = 0.75;   // of the contacts of such a part are on its object
-constexpr double kHighestEdge = 1.1;    // m over the floor, of a table
+constexpr double kHighestEdge = 1.1;    // m over the floor, of a table that was not drawn all round
 constexpr int kDeepest = 3;             // leftovers of leftovers
 constexpr double kMostOfIt = 0.75;      // of the contacts lie on sides where sides were drawn
 constexpr double kLongestPart = 2.5;    // m: longer is a wall, whatever else the hand did
@@ -32,7 +32,7 @@ constexpr double kFar = 0.15;           // m: farther off what was drawn is a li
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
-  bool round_wearer = false;    ///< a level contour with the wearer inside: walls
+  bool round_wearer = false;    ///< a level contour with the wearer inside, or too high: walls
   bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
   double misfit = HUGE_VAL;     ///< of a screen: mean square distance of the whole trace from its contour, m²
 };
@@ -114,6 +114,8 @@ Attempt table(std::span<const TracePoint> bent, Surface surface, double floor_z,
     }
   }
   if (!fit) return {std::nullopt, "a level surface, but no two adjacent sides of a rectangle"};
+  if (!fit->closed && height > kHighestEdge)
+    return {std::nullopt, "an open level contour, higher than tables are", true};
   if (wearer_inside(points, surface, *fit)) return {std::nullopt, "a level contour round the wearer, no table", true};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Table;

@@ -27,6 +27,7 @@ constexpr double kMaxMissing = 0.4;  // m of that overlap that drift may have ta
 constexpr double kTableHeights = 0.3, kTableSizes = 1.0;
 constexpr double kScreenHeights = 0.8, kScreenSizes = 0.7;
 constexpr double kSeatHeights = 0.2;
+constexpr double kSeatWidth = 0.4;  // m: seats nearer than that are one
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
@@ -202,6 +203,26 @@ std::optional<double> along_wall_distance(const MapState& state, const graph::Ma
   return squared(missing) / (squared(doubt) * variance);
 }
 
+/// Centre and sizes of an object as a box along the axes of `frame_heading`, m: across, along, up.
+struct Box {
+  Eigen::Vector3d centre, size;
+};
+Box box_of(const Landmark& l, double frame_heading) {
+  constexpr double kScreenDepth = 0.3, kTableDepth = 0.3;  // m
+  const double c = std::cos(frame_heading), s = std::sin(frame_heading);
+  Box box;
+  box.centre = {c * l.x[0] + s * l.x[1], c * l.x[1] - s * l.x[0], l.x[2]};
+  if (l.kind == LandmarkKind::Screen)
+    box.size = {kScreenDepth, l.x[4], l.x[5]};
+  else if (l.kind == LandmarkKind::Seat)
+    box.size = Eigen::Vector3d::Constant(kSeatWidth);
+  else if (quarter_turns(l.x[3], frame_heading) % 2 == 0)
+    box.size = {l.x[4], l.x[5], kTableDepth};
+  else
+    box.size = {l.x[5], l.x[4], kTableDepth};
+  return box;
+}
+
 Edge turned(Edge edge, int quarter_turns) {
   // Counter-clockwise round the rectangle: what is +u in the newcomer's axes is +v in axes turned back by 90°.
   constexpr std::array<Edge, 4> round{Edge::PlusU, Edge::PlusV, Edge::MinusU, Edge::MinusV};
@@ -274,6 +295,15 @@ bool touched_elsewhere(const MapState& state, std::size_t visit) {
   const auto here = contact_interval(state, record, WallFrame(landmark));
   const auto others = touched_by_visits(state, record.landmark, visit);
   return here && others && missing_overlap(*here, *others) > kMaxMissing;
+}
+
+bool in_one_place(const Landmark& a, const Landmark& b) {
+  if (a.kind != b.kind || a.kind == LandmarkKind::Wall || a.kind == LandmarkKind::Direction) return false;
+  if (a.kind == LandmarkKind::Screen && std::abs(wrap_angle(a.x[3] - b.x[3])) > kMaxTurn) return false;  // two faces
+  const Box x = box_of(a, b.x[3]), y = box_of(b, b.x[3]);
+  const Eigen::Array3d apart = (x.centre - y.centre).cwiseAbs();
+  const Eigen::Array3d shared = (0.5 * (x.size + y.size).array() - apart).min(x.size.array().min(y.size.array()));
+  return shared.minCoeff() > 0.0 && 2.0 * shared.prod() > std::min(x.size.prod(), y.size.prod());
 }
 
 std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, const graph::Marginals& marginals,

@@ -41,6 +41,10 @@ double variance_along(const MapState& state, const graph::Marginals& marginals, 
 /// that it would be no candidate for it now: walls of two rooms that continue each other, and drift has been corrected.
 bool touched_elsewhere(const MapState& state, std::size_t visit);
 
+/// Whether two tables, screens or seats would stand in one and the same place, which two things cannot: most of the
+/// smaller one is within the other.
+bool in_one_place(const graph::Landmark& a, const graph::Landmark& b);
+
 /// Squared Mahalanobis distance that `dimensions` numbers exceed as rarely as one number exceeds `sigma`
 /// (Wilson–Hilferty).
 double gate(double sigma, int dimensions);

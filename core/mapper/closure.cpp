@@ -148,7 +148,10 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
     if (!optimise(trial, config_.solver.closure_iterations)) continue;
     double relief = merged + 2.0 * (graph::cost(state.graph) - trial.summary.last_cost);
     if (relief >= config_.association.min_relief) relief -= free_space_cost(trial, nullptr, most);
-    if (relief < config_.association.min_relief && !touched_elsewhere(state, v)) continue;
+    const auto& landmarks = trial.graph.landmarks;
+    const bool contradicts = relief >= config_.association.min_relief &&
+                             !in_one_place(landmarks[alone], landmarks[state.observations[v].landmark]);
+    if (!contradicts && !touched_elsewhere(state, v)) continue;
     contradicted_.push_back(ordered(alone, state.observations[v].landmark));
     state = std::move(trial);
     merged = free_space_cost(state, nullptr, most);

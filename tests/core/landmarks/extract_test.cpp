@@ -168,6 +168,16 @@ TEST(Extract, TwoScreensFarApartInOneGesture) {
   EXPECT_NEAR(found.observations[1].landmark.x[4], 1.3, 0.02);
 }
 
+TEST(Extract, TwoSidesOfARectangleAboveTheHeightOfTablesAreNoTable) {
+  // Round the corner of a room at one height; drawn all round it is a counter.
+  const auto corners = level_rectangle({1.0, 0.5, 1.3}, 0.3, 1.8, 0.5);
+  for (const auto& seen : extract_landmarks(trace({corners[0], corners[1], corners[2]}), 0.0, kConfig).observations)
+    EXPECT_EQ(seen.landmark.kind, LandmarkKind::Wall);
+  const auto counter = extract_landmarks(trace(round_trip(corners), {.body = {1.0, -1.5, 1.0}}), 0.0, kConfig);
+  ASSERT_EQ(counter.observations.size(), 1u) << counter.reason;
+  EXPECT_EQ(counter.observations[0].landmark.kind, LandmarkKind::Table);
+}
+
 TEST(Extract, SaysWhyNothingWasFound) {
   // A level surface at the height of the knees.
   const auto low = level_rectangle({0.0, 0.0, 0.1}, 0.0, 1.0, 0.6);

@@ -139,6 +139,45 @@ TEST(Revise, LeavesAVisitThatOnlyDriftKeepsApart) {
   EXPECT_EQ(state.graph.landmarks.size(), 1U);
 }
 
+TEST(InOnePlace, AreThingsOfAKindOfWhichOneIsMostlyWithinTheOther) {
+  const auto table = [](double x, double y, double heading, double length, double width) {
+    return graph::Landmark{.kind = graph::LandmarkKind::Table, .x = {x, y, 0.75, heading, length, width, 0.0}};
+  };
+  const graph::Landmark desk = table(1.0, 2.0, 0.4, 1.6, 0.8);
+  EXPECT_TRUE(in_one_place(desk, desk));
+  EXPECT_TRUE(in_one_place(table(1.1, 2.1, 0.4, 0.8, 0.4), desk)) << "a small one within it";
+  EXPECT_TRUE(in_one_place(table(1.0, 2.0, 0.4 + 0.5 * std::numbers::pi, 0.8, 1.6), desk))
+      << "its axes named otherwise";
+  const double s = std::sin(0.4), c = std::cos(0.4);
+  EXPECT_FALSE(in_one_place(table(1.0 - 0.8 * s, 2.0 + 0.8 * c, 0.4, 1.6, 0.8), desk)) << "side by side";
+  EXPECT_FALSE(in_one_place(table(1.0 + 1.6 * c, 2.0 + 1.6 * s, 0.4, 1.6, 0.8), desk)) << "end to end";
+
+  graph::Landmark seat{.kind = graph::LandmarkKind::Seat, .x = {0.0, 0.0, 0.45, 0.0, 0.0, 0.0, 0.0}}, next = seat;
+  EXPECT_FALSE(in_one_place(seat, desk)) << "of another kind";
+  next.x[1] = 0.1;
+  EXPECT_TRUE(in_one_place(seat, next));
+  next.x[1] = 0.5;
+  EXPECT_FALSE(in_one_place(seat, next)) << "a row of chairs";
+
+  graph::Landmark screen{.kind = graph::LandmarkKind::Screen, .x = {3.0, 0.0, 1.2, 0.0, 0.6, 0.35, 0.0}},
+      other = screen;
+  other.x[2] = 1.25;
+  EXPECT_TRUE(in_one_place(screen, other));
+  other.x[2] = 1.6;
+  EXPECT_FALSE(in_one_place(screen, other)) << "one above the other";
+  other.x[2] = 1.2, other.x[3] = std::numbers::pi;
+  EXPECT_FALSE(in_one_place(screen, other)) << "back to back";
+}
+
+TEST(Revise, LeavesTheVisitOfASloppyHandWhereNothingElseCanStand) {
+  MapState state = seats_taken_for_one({0.0, 0.0, 0.19});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  for (graph::SeatFactor& seat : state.graph.seats) seat.sigma_level_m = 0.01, seat.loss = {};  // a hard contradiction
+  EXPECT_FALSE(closer.revise(state));
+  EXPECT_EQ(state.graph.landmarks.size(), 1U);
+}
+
 TEST(Revise, TakesBackTheVisitThatTouchedAnotherStretchOfThePlane) {
   MapState state = wall_touched_along({{0.0, 3.0}, {1.0, 2.0}, {4.0, 6.0}});
   LoopCloser closer{MapperConfig{}};

@@ -12,6 +12,15 @@
 #include "daemon/service_manager.hpp"
 #include "daemon/signals.hpp"
 
+#ifdef KINEMAP_JEMALLOC
+/// jemalloc(3) reads it. Optimising takes tens of megabytes for a moment, again and again; glibc's heap consisted of
+/// the holes for two thirds after some hours. What is free goes back to the system after a second, in a thread of its
+/// own.
+extern "C" {
+const char* malloc_conf = "background_thread:true,narenas:2,dirty_decay_ms:1000,muzzy_decay_ms:0";
+}
+#endif
+
 namespace {
 
 using namespace kinemap;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline.hpp"
 
-#include <malloc.h>
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
@@ -26,7 +25,6 @@ std::int64_t unix_ms() {
 
 constexpr double kMarkS = 1.0;        // between marks of the stream in the journal
 constexpr double kStrideS = 1.0;      // within this time one walks straight
-constexpr double kTrimS = 60.0;       // of stream
 constexpr double kUnseenSpeed = 1.0;  // m/s that the wearer is taken to have walked while nobody looked
 
 std::vector<journal::Entry> stored_entries(SessionJournal* journal) {
@@ -277,7 +275,6 @@ void Pipeline::solve(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { events_.wake(); });
   restore(stop);
   SolverStats stats;
-  double trimmed_s = 0.0;
   for (;;) {
     const auto ticket = events_.ticket();
     if (stop.stop_requested()) return;
@@ -301,12 +298,6 @@ void Pipeline::solve(const std::stop_token& stop) {
     stats.busy_s += seconds;
     stats.longest_s = std::max(stats.longest_s, seconds);
     solver_stats_.set(stats);
-    // Optimising takes tens of megabytes for a moment; small blocks that stay come to lie between the holes it leaves,
-    // which after hours were two thirds of the heap. (mallopt()'s fixed limits cost 2.5 times the system time.)
-    if (const double time_s = mapper_.snapshot()->time_s; std::abs(time_s - trimmed_s) >= kTrimS) {
-      ::malloc_trim(0);
-      trimmed_s = time_s;
-    }
   }
 }
 

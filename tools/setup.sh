@@ -16,6 +16,7 @@ packages=(
   g++ cmake ninja-build ccache git ca-certificates pkg-config # build
   libeigen3-dev libboost-dev libceres-dev libopenblas-dev     # mathematics, Asio, Beast, Lockfree
   libspdlog-dev nlohmann-json3-dev libcli11-dev libexpat1-dev zlib1g-dev # log, JSON, command line, XML, gzip
+  libjemalloc-dev                                             # kinemapd's memory
   libsystemd-dev                                              # readiness, watchdog
   dpkg-dev file                                               # the Debian package
   libssl-dev libqrencode-dev                                  # TLS, pairing

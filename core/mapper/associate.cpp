@@ -203,23 +203,23 @@ std::optional<double> along_wall_distance(const MapState& state, const graph::Ma
   return squared(missing) / (squared(doubt) * variance);
 }
 
-/// Centre and sizes of an object as a box along the axes of `frame_heading`, m: across, along, up.
+/// A table, screen or seat as a box along the axes of `heading`: ahead, to the left, up; m.
 struct Box {
   Eigen::Vector3d centre, size;
 };
-Box box_of(const Landmark& l, double frame_heading) {
-  constexpr double kScreenDepth = 0.3, kTableDepth = 0.3;  // m
-  const double c = std::cos(frame_heading), s = std::sin(frame_heading);
+Box box_of(const Landmark& l, double heading) {
+  constexpr double kDepth = 0.3;  // m, of what is flat
+  const double c = std::cos(heading), s = std::sin(heading);
   Box box;
   box.centre = {c * l.x[0] + s * l.x[1], c * l.x[1] - s * l.x[0], l.x[2]};
   if (l.kind == LandmarkKind::Screen)
-    box.size = {kScreenDepth, l.x[4], l.x[5]};
+    box.size = {kDepth, l.x[4], l.x[5]};
   else if (l.kind == LandmarkKind::Seat)
     box.size = Eigen::Vector3d::Constant(kSeatWidth);
-  else if (quarter_turns(l.x[3], frame_heading) % 2 == 0)
-    box.size = {l.x[4], l.x[5], kTableDepth};
+  else if (quarter_turns(l.x[3], heading) % 2 == 0)
+    box.size = {l.x[4], l.x[5], kDepth};
   else
-    box.size = {l.x[5], l.x[4], kTableDepth};
+    box.size = {l.x[5], l.x[4], kDepth};
   return box;
 }
 

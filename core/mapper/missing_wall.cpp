@@ -21,6 +21,8 @@ constexpr double kScreenDepth = 0.06;     // m: a screen hangs so far before its
 constexpr double kFurnitureSigma = 0.08;  // m
 constexpr double kBeside = 1.0;           // m: furniture begins so near to where hand and body had to stop
 constexpr double kThickness = 0.13;       // m: of a partition of which one face was touched
+constexpr double kBody = 0.4;             // m: the wearer's middle keeps about so far from a wall
+constexpr double kBodySigma = 0.3;        // m
 
 }  // namespace
 
@@ -41,7 +43,8 @@ struct MissingWalls::Gap {
   }
 };
 
-MissingWalls::MissingWalls(const MapState& state, const TouchedWalls& walls) : walls_(walls.stretches) {
+MissingWalls::MissingWalls(const MapState& state, const TouchedWalls& walls)
+    : poses_(state.graph.poses), walls_(walls) {
   for (const auto& visit : state.observations) {
     const auto& landmark = state.graph.landmarks[visit.landmark];
     if (landmark.kind != LandmarkKind::Table && landmark.kind != LandmarkKind::Screen) continue;
@@ -74,7 +77,7 @@ double MissingWalls::furniture(const Gap& gap) const {
 
 std::optional<double> MissingWalls::partition(const Gap& gap) const {
   std::optional<double> nearest;
-  for (const Stretch& face : walls_) {
+  for (const Stretch& face : walls_.stretches) {
     const Eigen::Vector3d middle = 0.5 * (face.head() + face.tail());
     const double at = gap.out.dot(middle) - kThickness;
     if (face.frame.normal.dot(gap.out) < std::cos(kParallel) || at < gap.touched - kShyOfCorner - kThickness ||
@@ -84,6 +87,14 @@ std::optional<double> MissingWalls::partition(const Gap& gap) const {
     nearest = std::min(at, nearest.value_or(at));
   }
   return nearest;
+}
+
+double MissingWalls::walked(const Gap& gap) const {
+  double farthest = -HUGE_VAL;
+  for (std::size_t k = 0; k < poses_.size(); ++k)
+    if (walls_.zone_of_pose[k] == gap.a.zone && gap.holds(poses_[k].p))
+      farthest = std::max(farthest, gap.out.dot(poses_[k].p));
+  return farthest < gap.limit ? farthest : -HUGE_VAL;  // who went on went through a door
 }
 
 std::optional<MissingWall> MissingWalls::between(const Stretch& a, const Stretch& b) const {
@@ -102,11 +113,13 @@ std::optional<MissingWall> MissingWalls::between(const Stretch& a, const Stretch
   gap.touched = opposite ? std::max(head, tail) : back ? tail : head;
   gap.limit = gap.touched + (opposite ? kBeyond : std::max(0.0, -overlap));
   MissingWall wall{gap.out, 0.0, kFurnitureSigma, !opposite};
-  const double things = furniture(gap);
+  const double things = furniture(gap), way = walked(gap);
   if (const auto face = partition(gap)) {
     wall.offset = std::max(*face, gap.touched);
-  } else if (things > gap.touched) {
+  } else if (things > std::max(gap.touched, way)) {
     wall.offset = things;
+  } else if (way + kBody > gap.touched + kShyOfCorner) {
+    wall.offset = way + kBody, wall.sigma_m = kBodySigma;
   } else {
     wall.offset = gap.touched + kShyOfCorner, wall.sigma_m = kShySigma;
   }

@@ -18,8 +18,9 @@ struct MissingWall {
   bool step = false;     ///< between parallel walls, else between opposite ones
 };
 
-/// Infers missing walls from what is in the rooms. It stands behind the ends that were touched and behind the furniture
-/// beside them, which is mostly what kept the hand from it; and before what was touched from its other side.
+/// Infers missing walls from what is in the rooms. It stands behind the ends that were touched, behind the furniture
+/// beside them, which is mostly what kept the hand from it, and behind where the wearer walked; and before what was
+/// touched from its other side. Refers to what it was made of.
 class MissingWalls {
  public:
   MissingWalls(const MapState& state, const TouchedWalls& walls);
@@ -38,10 +39,13 @@ class MissingWalls {
 
   /// How far out the furniture reaches that stands beside what was touched, m; −∞ where there is none.
   [[nodiscard]] double furniture(const Gap& gap) const;
+  /// How far out the wearer walked, m; −∞ where nobody did, or went on through a door.
+  [[nodiscard]] double walked(const Gap& gap) const;
   /// How far out the inner face of a partition is whose other face was touched.
   [[nodiscard]] std::optional<double> partition(const Gap& gap) const;
 
-  const std::vector<Stretch>& walls_;
+  const std::vector<Pose>& poses_;
+  const TouchedWalls& walls_;
   std::vector<Furniture> furniture_;
 };
 

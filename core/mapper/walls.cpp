@@ -16,6 +16,9 @@ namespace {
 constexpr std::size_t kMaxTrials = 200;  // solutions looked at before rings that are no rooms are broken open
 constexpr double kInside = 0.7;          // part of the places from which its walls were touched that a room contains
 constexpr double kMinLength = 0.2;       // m
+constexpr double kAlongside = 2.0;       // m: who walks so near before a wall walks along it
+constexpr double kBody = 0.3;            // m: it goes on so far beyond who does, and clearly past its touched end
+constexpr double kMostUntouched = 3.0;   // m that a wall is prolonged by for that
 constexpr double kOpenSigma = 2.0;  // m: where nobody touched a wall any farther it may end, or go on through a room
 
 /// For each stretch the one that its head meets.
@@ -135,6 +138,23 @@ std::vector<Chain> chains_of(const std::vector<Stretch>& stretches, const JoinTa
   return chains;
 }
 
+/// Where an end that meets nobody is: where it was touched or, beyond that, where the wearer still walked along the
+/// wall and not through it. `sign`: 1 for the head, -1 for the tail.
+double open_end(const MapState& state, const TouchedWalls& touched, const Stretch& wall, double sign) {
+  const double end = sign > 0.0 ? wall.touched.hi : wall.touched.lo;
+  double beyond = 0.0;
+  for (std::size_t k = 0; k < state.graph.poses.size(); ++k) {
+    if (touched.zone_of_pose[k] != wall.zone) continue;
+    const Eigen::Vector3d& p = state.graph.poses[k].p;
+    const double before = wall.frame.distance(p), past = sign * (wall.frame.along(p) - end);
+    if (before > 0.0 && before < kAlongside && past > kBody && past < kMostUntouched)
+      beyond = std::max(beyond, past + kBody);
+  }
+  const double to = end + sign * beyond;
+  const auto crossed = passages(state, wall.frame, std::min(end, to), std::max(end, to));
+  return crossed.empty() ? to : end;
+}
+
 }  // namespace
 
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config) {
@@ -149,11 +169,10 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
   const auto chains = chains_of(stretches, joins, next);
   std::vector<FiniteWall> walls;
   for (const Chain& chain : chains) {
-    const Interval& ends = chain.plane.touched;
     walls.push_back({chain.plane.landmark,
                      chain.landmarks,
-                     {ends.lo, EndKind::Open, {}, kOpenSigma},
-                     {ends.hi, EndKind::Open, {}, kOpenSigma}});
+                     {open_end(state, touched, chain.plane, -1.0), EndKind::Open, {}, kOpenSigma},
+                     {open_end(state, touched, chain.plane, 1.0), EndKind::Open, {}, kOpenSigma}});
   }
   for (std::size_t a = 0; a < chains.size(); ++a) {
     const auto meets = next[chains[a].last];

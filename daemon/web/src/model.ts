@@ -20,7 +20,7 @@ export interface MapObject {
   corners?: Vec3[];
   size?: Vec2;
   height_assumed?: boolean;
-  /** Walls: why it ends at the first and second of its corners; "open": nobody touched it any farther. */
+  /** Walls: why it ends at the first and second of its corners; "open": nobody knows whether it goes on. */
   ends?: ("corner" | "inferred" | "open")[];
   sigma?: { position?: number; heading?: number; size?: number[] };
   observations: number;

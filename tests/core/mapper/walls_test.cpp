@@ -203,6 +203,19 @@ TEST(CutWalls, AnEndThatMeetsNobodyStaysWhereItWasTouched) {
   EXPECT_EQ(cut_walls(visit.state, kConfig)[0].head.kind, EndKind::Open);
 }
 
+TEST(CutWalls, AnOpenEndGoesOnWhereTheWearerWalksAlongTheWall) {
+  Visit visit;
+  visit.touch({0, 0}, {1.5, 0});
+  visit.walk_to({3.2, 0.6});
+  const auto along = cut_walls(visit.state, kConfig);
+  ASSERT_EQ(along.size(), 1U);
+  EXPECT_EQ(along[0].head.kind, EndKind::Open);
+  EXPECT_NEAR(along[0].head.s - along[0].tail.s, 3.5, 0.3);
+  visit.walk_to({2.4, 0.6}).walk_to({2.4, -0.8});  // through where it would go on
+  const auto through = cut_walls(visit.state, kConfig);
+  EXPECT_NEAR(through[0].head.s - through[0].tail.s, 1.5, 0.3);
+}
+
 TEST(CutWalls, TwoWallsAndACornerAreNoRoom) {
   Visit visit;
   visit.touch({0.4, 0}, {3.6, 0});
@@ -230,6 +243,18 @@ TEST(CutWalls, AWallThatNobodyTouchedIsInferredBehindTheTableBeforeIt) {
   EXPECT_EQ(rooms[0].inferred_sides, std::vector<std::size_t>{1});
   EXPECT_NEAR(rooms[0].polygon[1].x(), 4.0, 0.05);
   EXPECT_NEAR(rooms[0].polygon[2].x(), 4.0, 0.05);
+}
+
+TEST(CutWalls, AWallThatNobodyTouchedIsInferredBehindWhereTheWearerWalked) {
+  Visit visit;
+  visit.touch({0.4, 0}, {1.5, 0});
+  visit.walk_to({2.6, 1.5});
+  visit.touch({1.4, 3}, {0.4, 3});
+  visit.touch({0, 2.6}, {0, 0.4});
+  const auto walls = cut_walls(visit.state, kConfig);
+  expect_lengths(walls, {3, 3, 3}, 0.2);
+  EXPECT_EQ(walls[0].head.kind, EndKind::Inferred);
+  EXPECT_GT(walls[0].head.sigma_m, 0.2);
 }
 
 TEST(CutWalls, StretchesOfOneWallAreOneWall) {

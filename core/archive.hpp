@@ -32,6 +32,7 @@ class Archive {
 
  private:
   void raw(void* data, std::size_t size) {
+    if (size == 0) return;  // an empty list points nowhere
     if (!loading_) {
       to_.append(static_cast<const char*>(data), size);
     } else if (size <= from_.size()) {

@@ -83,12 +83,16 @@ class Archive {
   void value(Eigen::Quaterniond& q) { value(q.coeffs()); }
   template <class T, int R, int C, int O, int MR, int MC>
   void value(Eigen::Matrix<T, R, C, O, MR, MC>& m) {
-    auto rows = length(static_cast<std::size_t>(m.rows())), cols = length(static_cast<std::size_t>(m.cols()));
-    if (loading_ && rows * cols * sizeof(T) > from_.size()) sound_ = false, from_ = {}, rows = cols = 0;
+    const std::size_t rows = length(static_cast<std::size_t>(m.rows()));
+    const std::size_t cols = length(static_cast<std::size_t>(m.cols()));
+    const bool fits = (R == Eigen::Dynamic || rows == static_cast<std::size_t>(R)) &&
+                      (C == Eigen::Dynamic || cols == static_cast<std::size_t>(C));
+    if (loading_ && (!sound_ || !fits || rows * cols * sizeof(T) > from_.size())) {
+      sound_ = false, from_ = {};
+      return;
+    }
     if constexpr (R == Eigen::Dynamic || C == Eigen::Dynamic)
       m.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
-    else if (rows * cols != static_cast<std::size_t>(m.size()))
-      return void(sound_ = false);
     raw(m.data(), static_cast<std::size_t>(m.size()) * sizeof(T));
   }
 

@@ -22,7 +22,7 @@ std::optional<ObjectType> object_type_from(const std::string& name);
 enum class EndKind : std::uint8_t {
   Corner,    ///< it meets the next wall
   Inferred,  ///< it meets a wall that nobody touched, but that must be there
-  Open       ///< there the hand last touched it; nobody knows what comes then: the wall may be longer
+  Open       ///< so far it was touched or walked along; nobody knows what comes then: the wall may be longer
 };
 const char* to_string(EndKind kind);  ///< "corner", "inferred", "open"
 std::optional<EndKind> end_kind_from(const std::string& name);

@@ -32,7 +32,7 @@ constexpr double kFar = 0.15;           // m: farther off what was drawn is a li
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
-  bool round_wearer = false;    ///< a level contour with the wearer inside, or too high: walls
+  bool rather_walls = false;    ///< a level contour with the wearer inside, or too high for a table
   bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
   double misfit = HUGE_VAL;     ///< of a screen: mean square distance of the whole trace from its contour, m²
 };
@@ -240,9 +240,8 @@ std::optional<Observation> bent_screen(std::span<const TracePoint> points, const
       std::minmax_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.p.z() < b.p.z(); });
   if (points.size() < 8 || high->p.z() - low->p.z() < config.rectangle_min_side_m) return std::nullopt;
   const auto attempt = [&](std::span<const TracePoint> tried) {
-    for (const Surface& surface : find_surfaces(tried, config))
-      if (surface.kind == Surface::Kind::Upright && !leans(tried, surface, config.max_slant_rad))
-        return screen(tried, surface, config);
+    const auto surface = find_upright_surface(tried, config);
+    if (surface && !leans(tried, *surface, config.max_slant_rad)) return screen(tried, *surface, config);
     return Attempt{};
   };
   const double rate = heading_rate(points, [&](std::span<const TracePoint> tried) { return attempt(tried).misfit; });
@@ -268,10 +267,10 @@ MainObject main_object(std::span<const TracePoint> points, IndexRange range, dou
   if (surfaces.empty()) return {{}, "the hand did not stay on one surface", {range.begin, range.begin}};
   MainObject out;
   out.contacts = {range.begin + surfaces[0].members.front(), range.begin + surfaces[0].members.back() + 1};
-  bool round_wearer = false;
+  bool rather_walls = false;
   for (const Surface& surface : surfaces) {
     // One long edge of a table is no wall beside it, even where the table could not be made out.
-    if (&surface != &surfaces[0] && surface.share < kSecondChoice && !round_wearer) break;
+    if (&surface != &surfaces[0] && surface.share < kSecondChoice && !rather_walls) break;
     auto attempt = classify(part, surface, floor_z, config);
     if (attempt.observation) {
       shift(*attempt.observation, range.begin);
@@ -280,7 +279,7 @@ MainObject main_object(std::span<const TracePoint> points, IndexRange range, dou
       break;
     }
     if (out.reason.empty()) out.reason = attempt.reason;
-    round_wearer = attempt.round_wearer;
+    rather_walls = attempt.rather_walls;
   }
   return out;
 }

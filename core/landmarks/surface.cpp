@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/landmarks/geometry.hpp"
 
@@ -152,6 +153,16 @@ std::optional<Surface> level_surface(std::span<const TracePoint> points, const L
   return surface;
 }
 
+/// The surface with its share of the trace, if that is half of it.
+std::optional<Surface> holding_half(std::span<const TracePoint> points, std::optional<Surface> surface) {
+  if (!surface) return surface;
+  std::vector<std::size_t> all(points.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  surface->share = path_length(points, surface->members) / std::max(1e-9, path_length(points, all));
+  if (surface->share < 0.5) surface.reset();
+  return surface;
+}
+
 }  // namespace
 
 IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfig& config) {
@@ -173,17 +184,14 @@ IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfi
   return {front, n - back};
 }
 
+std::optional<Surface> find_upright_surface(std::span<const TracePoint> points, const LandmarkConfig& config) {
+  return holding_half(points, upright_surface(points, config));
+}
+
 std::vector<Surface> find_surfaces(std::span<const TracePoint> points, const LandmarkConfig& config) {
-  std::vector<std::size_t> all(points.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  const double total = path_length(points, all);
   std::vector<Surface> out;
-  for (auto& surface : {upright_surface(points, config), level_surface(points, config)}) {
-    if (!surface) continue;
-    out.push_back(*surface);
-    out.back().share = path_length(points, surface->members) / std::max(1e-9, total);
-    if (out.back().share < 0.5) out.pop_back();
-  }
+  if (auto surface = find_upright_surface(points, config)) out.push_back(*surface);
+  if (auto surface = holding_half(points, level_surface(points, config))) out.push_back(*surface);
   // One that holds clearly more of the trace; else the one from which it strays less.
   if (out.size() == 2) {
     const bool alike = std::abs(out[0].share - out[1].share) < 0.1 * std::max(out[0].share, out[1].share);

@@ -41,4 +41,7 @@ IndexRange without_reach(std::span<const TracePoint> points, const LandmarkConfi
 /// straight level line count as upright (a wall traced at one height).
 std::vector<Surface> find_surfaces(std::span<const TracePoint> points, const LandmarkConfig& config);
 
+/// The upright one of them alone.
+std::optional<Surface> find_upright_surface(std::span<const TracePoint> points, const LandmarkConfig& config);
+
 }  // namespace kinemap

@@ -113,10 +113,9 @@ std::optional<MissingWall> MissingWalls::between(const Stretch& a, const Stretch
   gap.touched = opposite ? std::max(head, tail) : back ? tail : head;
   gap.limit = gap.touched + (opposite ? kBeyond : std::max(0.0, -overlap));
   MissingWall wall{gap.out, 0.0, kFurnitureSigma, !opposite};
-  const double things = furniture(gap), way = walked(gap);
   if (const auto face = partition(gap)) {
     wall.offset = std::max(*face, gap.touched);
-  } else if (things > std::max(gap.touched, way)) {
+  } else if (const double things = furniture(gap), way = walked(gap); things > std::max(gap.touched, way)) {
     wall.offset = things;
   } else if (way + kBody > gap.touched + kShyOfCorner) {
     wall.offset = way + kBody, wall.sigma_m = kBodySigma;

@@ -169,10 +169,11 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
   const auto chains = chains_of(stretches, joins, next);
   std::vector<FiniteWall> walls;
   for (const Chain& chain : chains) {
+    const Interval& ends = chain.plane.touched;
     walls.push_back({chain.plane.landmark,
                      chain.landmarks,
-                     {open_end(state, touched, chain.plane, -1.0), EndKind::Open, {}, kOpenSigma},
-                     {open_end(state, touched, chain.plane, 1.0), EndKind::Open, {}, kOpenSigma}});
+                     {ends.lo, EndKind::Open, {}, kOpenSigma},
+                     {ends.hi, EndKind::Open, {}, kOpenSigma}});
   }
   for (std::size_t a = 0; a < chains.size(); ++a) {
     const auto meets = next[chains[a].last];
@@ -191,6 +192,11 @@ std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Wal
     if (at.kind == Join::Kind::None) continue;
     walls[a].head = {at.head_s, kind, b, at.sigma_m};
     walls[b].tail = {at.tail_s, kind, a, at.sigma_m};
+  }
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const Stretch& plane = chains[k].plane;
+    if (walls[k].tail.kind == EndKind::Open) walls[k].tail.s = open_end(state, touched, plane, -1.0);
+    if (walls[k].head.kind == EndKind::Open) walls[k].head.s = open_end(state, touched, plane, 1.0);
   }
   return walls;
 }

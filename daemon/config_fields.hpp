@@ -100,6 +100,7 @@ void fields(V& v, TrackerConfig::Gesture& c) {
   v.number("outside_hip_off_m", c.outside_hip_off_m, Range{"m", -0.5, 0.5});
   v.number("rest_speed_mps", c.rest_speed_mps, Range{"m/s", 0.001, 100});
   v.number("hold_s", c.hold_s, Range{"s", 0, 3600});
+  v.number("both_hip_m", c.both_hip_m, Range{"m", 0, 100});
   v.number("both_hold_s", c.both_hold_s, Range{"s", 0, 3600});
   v.number("velocity_smoothing_s", c.velocity_smoothing_s, Range{"s", 0.001, 3600});
   v.number("speed_smoothing_s", c.speed_smoothing_s, Range{"s", 0.001, 3600});

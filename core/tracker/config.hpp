@@ -46,9 +46,9 @@ struct TrackerConfig {
   /// Left hand on the hip: the wearer's word that the right hand shows something.
   struct Gesture {
     double elbow_on_rad = 2.09;  ///< inner angle between upper arm and forearm
-    double elbow_off_rad = 2.36;
+    double elbow_off_rad = 2.8;
     double hip_on_m = 0.16;  ///< wrist, palm or finger to the iliac crest
-    double hip_off_m = 0.22;
+    double hip_off_m = 0.28;
     double crest_up_m = 0.10;   ///< iliac crest over the hip joint, in the pelvis frame
     double crest_out_m = 0.06;  ///< iliac crest outside the hip joint, in the pelvis frame
     // The finger tips may be so far below the hip joint; lower is a pocket or a hanging arm.
@@ -56,11 +56,12 @@ struct TrackerConfig {
     double below_hip_off_m = 0.14;
     // Wrist or palm must be so far outside of the hip joint; less is the belly or the lap.
     double outside_hip_on_m = 0.01;
-    double outside_hip_off_m = -0.02;
+    double outside_hip_off_m = -0.05;
     double rest_speed_mps = 0.18;  ///< of the wrist against the pelvis, to begin; swinging and scratching are faster
     double hold_s = 0.5;           ///< the hand must rest for so long; a trace still begins when it came near
-    double both_hold_s =
-        2.0;  ///< the right hand on its own hip for so long ends it; a shorter while it may be drawing there
+    // The right hand on its own hip ends it. It draws beside the hip too, so it must lie nearer, and for so long.
+    double both_hip_m = 0.12;
+    double both_hold_s = 2.0;
     double velocity_smoothing_s = 0.15;  ///< time constant of that velocity, against the jitter of the hand
     double speed_smoothing_s = 0.3;      ///< time constant of its magnitude
     double palm_m = 0.09;                ///< middle of the palm, along the hand from the wrist

@@ -27,7 +27,7 @@ double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vecto
 TrackerConfig::Gesture second_hand(TrackerConfig::Gesture config) {
   config.hold_s = config.both_hold_s;
   config.elbow_off_rad = config.elbow_on_rad;
-  config.hip_off_m = config.hip_on_m;
+  config.hip_on_m = config.hip_off_m = config.both_hip_m;
   config.below_hip_off_m = config.below_hip_on_m;
   config.outside_hip_off_m = config.outside_hip_on_m;
   return config;

@@ -138,6 +138,30 @@ TEST(Gesture, SecondHandOnTheHipSuspendsIt) {
   EXPECT_GT(outcome.traces[1].begin_s, 11.0);
 }
 
+// Short people draw the edge of a table beside their hip while they walk along it.
+TEST(Gesture, TheRightHandMayDrawBesideItsHip) {
+  for (const double stature_m : {1.55, 1.75, 1.95}) {
+    const Puppet puppet(stature_m, {});
+    const auto acts = between_standing(9.0, [](double t) {
+      Figure f = with_arms(standing(), on_hip(), on_hip({.shift = {0.16, 0.04, 0.0}}));
+      f.hips.x() = 0.15 * t;
+      return f;
+    });
+    EXPECT_EQ(track(perform(puppet, acts)).traces.size(), 1u) << stature_m;
+  }
+}
+
+TEST(Gesture, AHandThatStraysOnceItLayOnTheHipKeepsIt) {
+  for (const Eigen::Vector3d& shift : {Eigen::Vector3d(-0.20, 0.03, 0.20), {0.05, -0.12, 0.0}}) {
+    const Puppet puppet;
+    const auto acts = between_standing(9.0, [&](double t) {
+      const bool astray = t > 3.0 && t < 6.0;
+      return with_arms(standing(), on_hip({.shift = astray ? shift : Eigen::Vector3d::Zero()}), drawing(t));
+    });
+    EXPECT_EQ(track(perform(puppet, acts)).traces.size(), 1u) << shift.transpose();
+  }
+}
+
 TEST(Trace, ContactsReproduceTheHandInTheOdomFrame) {
   const Puppet puppet;
   const auto acts = between_standing(12.0, [&](double t) {

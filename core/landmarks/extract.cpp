@@ -284,16 +284,30 @@ MainObject main_object(std::span<const TracePoint> points, IndexRange range, dou
   return out;
 }
 
+bool is_rectangle(const Observation& seen) { return seen.landmark.kind != LandmarkKind::Wall; }
+
+/// The hand is again where it began, as after the round of a contour. Cheap to ask.
+bool comes_back(std::span<const TracePoint> points, IndexRange range) {
+  double farthest = 0.0;
+  for (std::size_t i = range.begin; i < range.end; ++i)
+    farthest = std::max(farthest, (points[i].p - points[range.begin].p).norm());
+  return range.begin < range.end && (points[range.end - 1].p - points[range.begin].p).norm() < 0.6 * farthest;
+}
+
 /// The one object that nearly all of points[begin, end) were drawn on, if there is one.
 std::optional<Observation> single_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
                                          const LandmarkConfig& config) {
   auto found = main_object(points, range, floor_z, config).observation;
+  if (!(found && is_rectangle(*found)) && comes_back(points, range)) {
+    if (auto bent = bent_screen(points.subspan(range.begin, range.end - range.begin), config)) {
+      shift(*bent, range.begin);
+      found = std::move(bent);
+    }
+  }
   const auto all = static_cast<double>(range.end - range.begin);
   if (found && static_cast<double>(found->contacts.size()) < kMostOfAPart * all) found.reset();
   return found;
 }
-
-bool is_rectangle(const Observation& seen) { return seen.landmark.kind != LandmarkKind::Wall; }
 
 /// What is asked of an object that shares its gesture with another one.
 struct PartRule {
@@ -351,11 +365,8 @@ bool may_be_table_corner(std::span<const TracePoint> points, const Observation& 
          !(before(a, middle(b)) && before(b, middle(a)));
 }
 
-/// A gesture over two objects one after the other, of which neither stands out in the whole: two walls touched at one
-/// height look like a level surface, two screens like none. Tries cuts in time, one where the first object ends and one
-/// where the second begins, since the way between rectangles may be long; both parts must be objects by themselves.
-std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRange range, double floor_z,
-                                     const PartRule& rule) {
+/// Where a gesture over two objects may be cut in time so that each part is long enough.
+std::vector<std::size_t> cuts_of(std::span<const TracePoint> points, IndexRange range, const PartRule& rule) {
   std::vector<std::size_t> cuts;
   double next_s = points[range.begin].time_s + rule.min_s;
   for (std::size_t cut = range.begin; cut < range.end; ++cut) {
@@ -364,17 +375,38 @@ std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRa
     next_s = points[cut].time_s + kCutStep;
     cuts.push_back(cut);
   }
+  return cuts;
+}
+
+/// Two contours one after the other: the hand comes back to where it began, and later ends where it was before.
+bool may_be_two_contours(std::span<const TracePoint> points, IndexRange range, const PartRule& rule) {
+  bool first = false;
+  for (const std::size_t cut : cuts_of(points, range, rule)) {
+    first = first || comes_back(points, {range.begin, cut});
+    if (first && comes_back(points, {cut, range.end})) return true;
+  }
+  return false;
+}
+
+/// A gesture over two objects one after the other, of which neither stands out in the whole: two walls touched at one
+/// height look like a level surface, two screens like none, or like a wall. Tries cuts in time, one where the first
+/// object ends and one where the second begins, since the way between rectangles may be long; both parts must be
+/// objects by themselves.
+std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRange range, double floor_z,
+                                     const PartRule& rule) {
+  const std::vector<std::size_t> cuts = cuts_of(points, range, rule);
   std::vector<std::optional<Observation>> before, after;
   for (const std::size_t cut : cuts) {
     before.push_back(single_object(points, {range.begin, cut}, floor_z, rule.config));
     after.push_back(single_object(points, {cut, range.end}, floor_z, rule.config));
   }
   const Observation *first = nullptr, *second = nullptr;
-  std::size_t most = 0;
+  std::pair<bool, std::size_t> most{false, 0};  // closed contours, and contacts explained
   for (std::size_t a = 0; a < cuts.size(); ++a) {
     for (std::size_t b = a; before[a] && b < cuts.size(); ++b) {
       if (!after[b] || (a != b && !(is_rectangle(*before[a]) && is_rectangle(*after[b])))) continue;
-      const std::size_t explained = before[a]->contacts.size() + after[b]->contacts.size();
+      const std::pair explained{before[a]->closed && after[b]->closed,
+                                before[a]->contacts.size() + after[b]->contacts.size()};
       if (explained <= most || may_be_table_corner(points, *before[a], *after[b], floor_z)) continue;
       most = explained;
       first = &*before[a], second = &*after[b];
@@ -390,12 +422,19 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
   Extraction out;
   const IndexRange drawn = without_reach(points, config);
   auto main = main_object(points, drawn, floor_z, config);
-  if (!main.observation && drawn.end > drawn.begin)
-    out.observations = two_objects(points, drawn, floor_z, part_rule(config, false));
+  const PartRule part = part_rule(config, false);
+  const bool wall = main.observation && !is_rectangle(*main.observation);
   // Two rectangles are no accident; walls can be cut out of a bent contour.
-  const bool rectangles = main.observation
-                              ? main.observation->landmark.kind == LandmarkKind::Table
-                              : !out.observations.empty() && std::ranges::all_of(out.observations, is_rectangle);
+  const auto all_rectangles = [](const std::vector<Observation>& seen) {
+    return !seen.empty() && std::ranges::all_of(seen, is_rectangle);
+  };
+  if (drawn.end > drawn.begin && (wall ? may_be_two_contours(points, drawn, part) : !main.observation)) {
+    auto two = two_objects(points, drawn, floor_z, part);
+    if (!wall || (all_rectangles(two) && two[0].closed && two[1].closed))
+      out.observations = std::move(two), main.observation.reset();
+  }
+  const bool rectangles =
+      main.observation ? main.observation->landmark.kind == LandmarkKind::Table : all_rectangles(out.observations);
   if (!rectangles) {
     if (auto bent = bent_screen(points.subspan(drawn.begin, drawn.end - drawn.begin), config)) {
       shift(*bent, drawn.begin);
@@ -410,7 +449,7 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
     extract_leftover(points, {drawn.begin, main.contacts.begin}, false, floor_z, rule, 0, out.observations);
     extract_leftover(points, {main.contacts.end, drawn.end}, true, floor_z, rule, 0, out.observations);
   }
-  if (out.observations.empty()) out.reason = main.reason;
+  if (out.observations.empty()) out.reason = main.reason, out.tried = main.contacts;
   std::sort(out.observations.begin(), out.observations.end(),
             [](const Observation& a, const Observation& b) { return a.contacts.front() < b.contacts.front(); });
   return out;

@@ -21,10 +21,12 @@ struct Observation {
   bool closed = false;                ///< rectangles: all four sides were drawn
 };
 
-/// What a trace turned out to be. `reason` says why nothing was found in it; nothing is dropped in silence.
+/// What a trace turned out to be. Where nothing was found in it, `reason` says why, since nothing is dropped in
+/// silence, and `tried` which contacts lie on the surface that holds most of it (may be empty).
 struct Extraction {
   std::vector<Observation> observations;
   std::string reason;
+  IndexRange tried;
 };
 
 /// Finds the objects that a trace was drawn on (paper, section IV). `points` in order of time, in a frame with z up and

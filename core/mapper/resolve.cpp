@@ -12,36 +12,68 @@ namespace {
 
 constexpr double kSoon = 60.0;        // s from the end of one gesture to the beginning of the next
 constexpr double kNear = 0.4;         // m from the last contact of the one to the first of the next
-constexpr double kSeam = 0.2;         // s that the pause is made to last, for the extraction only
+constexpr double kPause = 0.2;        // s that the pause is made to last, for the extraction only
 constexpr double kLeastShare = 0.15;  // of the contacts on the object come from either gesture
 
-/// Which ends of a trace also lose the hand's way along a level surface.
-enum class CutWay : std::uint8_t { Neither, First, Last };
+/// What of two gestures counts where the one ends and the other begins.
+enum class Seam : std::uint8_t {
+  WithoutWay,  ///< not the hand's way along the level surface, to it and from it
+  WithWay,
+  OnSurface  ///< what lies on the surface that was made out in each alone: the hand was lowered between them, say
+};
+constexpr Seam kSeams[] = {Seam::WithoutWay, Seam::WithWay, Seam::OnSurface};
 
-/// The trace without the reach at both ends.
-Trace without_ends(const Trace& trace, const std::vector<TracePoint>& points, const LandmarkConfig& config,
-                   CutWay cut) {
-  IndexRange kept = without_reach(points, config);
-  std::vector<Eigen::Vector2d> flat;
-  for (std::size_t i = kept.begin; i < kept.end; ++i) flat.emplace_back(points[i].p.head<2>());
-  const IndexRange drawn = without_way(flat, config);
-  if (cut == CutWay::Last) kept.end = kept.begin + drawn.end;
-  if (cut == CutWay::First) kept.begin += drawn.begin;
+/// The gesture without what is no contact at its ends.
+Trace without_ends(const Trace& trace, const std::vector<TracePoint>& points, double floor_z,
+                   const LandmarkConfig& config, Seam seam, bool first) {
+  IndexRange kept =
+      seam == Seam::OnSurface ? extract_landmarks(points, floor_z, config).tried : without_reach(points, config);
+  if (seam == Seam::WithoutWay) {
+    std::vector<Eigen::Vector2d> flat;
+    for (std::size_t i = kept.begin; i < kept.end; ++i) flat.emplace_back(points[i].p.head<2>());
+    const IndexRange drawn = without_way(flat, config);
+    if (first)
+      kept.end = kept.begin + drawn.end;
+    else
+      kept.begin += drawn.begin;
+  }
   Trace out = trace;
   out.contacts.assign(trace.contacts.begin() + static_cast<std::ptrdiff_t>(kept.begin),
                       trace.contacts.begin() + static_cast<std::ptrdiff_t>(kept.end));
   return out;
 }
 
-/// Whether the joined extraction is one rectangle on which both gestures touched.
-bool is_one_rectangle(const Extraction& extraction, std::size_t seam) {
+/// Whether the joined extraction is one rectangle on which both gestures touched; the contacts of the second one begin
+/// at `second`.
+bool is_one_rectangle(const Extraction& extraction, std::size_t second) {
   if (extraction.observations.size() != 1) return false;
   const Observation& seen = extraction.observations[0];
   if (seen.landmark.kind == graph::LandmarkKind::Wall) return false;
   const auto before =
-      std::count_if(seen.contacts.begin(), seen.contacts.end(), [&](std::size_t i) { return i < seam; });
+      std::count_if(seen.contacts.begin(), seen.contacts.end(), [&](std::size_t i) { return i < second; });
   const double share = static_cast<double>(before) / static_cast<double>(seen.contacts.size());
   return share >= kLeastShare && share <= 1.0 - kLeastShare;
+}
+
+/// Both gestures as one, if one rectangle was drawn in them.
+std::optional<ResolvedTrace> joined(const Trace& before, const Trace& after, const graph::Graph& graph,
+                                    std::size_t touch, double floor_z, LandmarkConfig config, Seam seam) {
+  ResolvedTrace both{
+      without_ends(before, trace_points(before, graph, touch), floor_z, config, seam, true), {}, {}, true};
+  const std::size_t second = both.trace.contacts.size();
+  const Trace next = without_ends(after, trace_points(after, graph, touch), floor_z, config, seam, false);
+  both.trace.contacts.insert(both.trace.contacts.end(), next.contacts.begin(), next.contacts.end());
+  both.trace.end_s = after.end_s;
+  both.points = trace_points(both.trace, graph, touch);
+  if (second == 0 || second == both.points.size() || (both.points[second].p - both.points[second - 1].p).norm() > kNear)
+    return std::nullopt;
+  auto without_pause = both.points;
+  const double pause = both.points[second].time_s - both.points[second - 1].time_s - kPause;
+  for (std::size_t i = second; i < without_pause.size(); ++i) without_pause[i].time_s -= pause;
+  if (seam == Seam::OnSurface) config.reach_max_s = 0.0;  // no reach is left
+  both.extraction = extract_landmarks(without_pause, floor_z, config);
+  if (!is_one_rectangle(both.extraction, second)) return std::nullopt;
+  return both;
 }
 
 }  // namespace
@@ -54,8 +86,8 @@ ResolvedTrace TraceResolver::resolve(const Trace& trace, const graph::Graph& gra
   open_ = trace;
   if (!before || trace.begin_s - before->end_s > kSoon) return alone;
 
-  for (const bool way : {false, true}) {
-    if (auto both = joined(*before, trace, graph, touch, floor_z, way)) {
+  for (const Seam seam : kSeams) {
+    if (auto both = joined(*before, trace, graph, touch, floor_z, config_, seam)) {
       open_.reset();
       return *both;
     }
@@ -69,29 +101,6 @@ void TraceResolver::renumber(std::size_t first, std::size_t fewer) {
     if (contact.key_pose < first) return open_.reset();
     contact.key_pose -= static_cast<KeyPoseId>(fewer);
   }
-}
-
-std::optional<ResolvedTrace> TraceResolver::joined(const Trace& before, const Trace& after, const graph::Graph& graph,
-                                                   std::size_t touch, double floor_z, bool with_way) const {
-  ResolvedTrace both{
-      without_ends(before, trace_points(before, graph, touch), config_, with_way ? CutWay::Neither : CutWay::Last),
-      {},
-      {},
-      true};
-  const std::size_t seam = both.trace.contacts.size();
-  const Trace next =
-      without_ends(after, trace_points(after, graph, touch), config_, with_way ? CutWay::Neither : CutWay::First);
-  both.trace.contacts.insert(both.trace.contacts.end(), next.contacts.begin(), next.contacts.end());
-  both.trace.end_s = after.end_s;
-  both.points = trace_points(both.trace, graph, touch);
-  if (seam == 0 || seam == both.points.size() || (both.points[seam].p - both.points[seam - 1].p).norm() > kNear)
-    return std::nullopt;
-  auto without_pause = both.points;
-  const double pause = both.points[seam].time_s - both.points[seam - 1].time_s - kSeam;
-  for (std::size_t i = seam; i < without_pause.size(); ++i) without_pause[i].time_s -= pause;
-  both.extraction = extract_landmarks(without_pause, floor_z, config_);
-  if (!is_one_rectangle(both.extraction, seam)) return std::nullopt;
-  return both;
 }
 
 }  // namespace kinemap

@@ -39,11 +39,6 @@ class TraceResolver {
   }
 
  private:
-  /// Both traces as one, if one rectangle was drawn in them; with or without the hand's way from the surface and back
-  /// to it where they meet.
-  [[nodiscard]] std::optional<ResolvedTrace> joined(const Trace& before, const Trace& after, const graph::Graph& graph,
-                                                    std::size_t touch, double floor_z, bool with_way) const;
-
   LandmarkConfig config_;
   std::optional<Trace> open_;  ///< the trace before, when nothing was found in it
 };

@@ -168,6 +168,21 @@ TEST(Extract, TwoScreensFarApartInOneGesture) {
   EXPECT_NEAR(found.observations[1].landmark.x[4], 1.3, 0.02);
 }
 
+/// Side by side on one desk they lie in one plane, which looks like a wall that was waved along.
+TEST(Extract, TwinScreensInOneGesture) {
+  const auto first = round_trip(upright_rectangle({0.6, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.57, 0.33));
+  const auto second = round_trip(upright_rectangle({0.0, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.57, 0.33));
+  std::vector<Eigen::Vector3d> path = first;
+  path.insert(path.end(), second.begin(), second.end());
+  const auto found = extract_landmarks(trace(path, {.speed_m_per_s = 0.2}), 0.0, kConfig);
+  ASSERT_EQ(found.observations.size(), 2u) << found.reason;
+  for (const auto& seen : found.observations) {
+    EXPECT_EQ(seen.landmark.kind, LandmarkKind::Screen);
+    EXPECT_NEAR(seen.landmark.x[4], 0.57, 0.03);
+    EXPECT_NEAR(seen.landmark.x[5], 0.33, 0.03);
+  }
+}
+
 TEST(Extract, TwoSidesOfARectangleAboveTheHeightOfTablesAreNoTable) {
   // Round the corner of a room at one height; drawn all round it is a counter.
   const auto corners = level_rectangle({1.0, 0.5, 1.3}, 0.3, 1.8, 0.5);

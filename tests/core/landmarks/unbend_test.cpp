@@ -65,6 +65,22 @@ TEST(Unbend, AScreenDrawnWhileTheHeadingTurnedIsNoWallAndNoMystery) {
   }
 }
 
+TEST(Unbend, TwoScreensInOneGestureWhileTheHeadingTurned) {
+  for (const double rate : {-0.03, 0.03}) {
+    auto points = along_screen();
+    const double begin_s = points.back().time_s + 1.0;
+    for (const TracePoint& p : along_screen())
+      points.push_back({p.time_s + begin_s, p.p + Eigen::Vector3d(2.5, 0.0, 0.1), p.p_body});
+    const auto found = extract_landmarks(unbent(points, -rate), 0.0, {});
+    ASSERT_EQ(found.observations.size(), 2U) << rate << found.reason;
+    for (const auto& seen : found.observations) {
+      EXPECT_EQ(seen.landmark.kind, graph::LandmarkKind::Screen) << rate;
+      EXPECT_NEAR(seen.landmark.x[4], 1.4, 0.04) << rate;
+      EXPECT_NEAR(seen.landmark.x[5], 0.8, 0.04) << rate;
+    }
+  }
+}
+
 TEST(Unbend, WavingAlongTwoWallsIsNoScreen) {
   // Two walls that meet at 150°, as a bent wall would look, and a hand that goes up and down on them.
   std::vector<Eigen::Vector3d> path;

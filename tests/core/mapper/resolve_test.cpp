@@ -73,6 +73,19 @@ TEST(TraceResolver, TwoEdgesWithTheWayOfTheHandBetweenThemAreOneTable) {
   EXPECT_NEAR((*map->objects[0].size)[1], 0.8, 0.03);
 }
 
+TEST(TraceResolver, TwoEdgesBetweenWhichTheHandWasLoweredAreOneTable) {
+  const Eigen::Vector3d lowered(0.15, -0.05, -0.15);
+  Wearer wearer;
+  wearer.walk_to(1.3, 0.0);
+  wearer.trace({kTable[0], kTable[1], kTable[1] + lowered}, kStand);
+  wearer.trace({kTable[1] + lowered, kTable[1], kTable[2], kTable[2] + lowered}, kStand);
+  const auto map = map_of(wearer);
+  ASSERT_EQ(map->objects.size(), 1u);
+  EXPECT_EQ(map->objects[0].type, ObjectType::Table);
+  EXPECT_NEAR((*map->objects[0].size)[0], 1.4, 0.06);
+  EXPECT_NEAR((*map->objects[0].size)[1], 0.8, 0.06);
+}
+
 TEST(TraceResolver, AScreenInterruptedHalfWay) {
   const auto c = test::upright_rectangle({2.0, 2.0, 1.4}, -1.5707963, 0.9, 0.5);
   Wearer wearer;

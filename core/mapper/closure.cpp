@@ -18,6 +18,8 @@ using graph::LandmarkKind;
 
 constexpr int kPullIterations = 3;
 constexpr int kReassignRounds = 2;
+constexpr double kUnlikely = -10.0;  // evidence: a closure with less is not tried for the sake of others
+constexpr double kAlike = 1.5;       // m by which two closures that bear each other out may move things differently
 
 /// Sets the loss of all factors on the newcomer's visits.
 void set_loss(MapState& state, const std::vector<std::size_t>& visits, graph::Loss contact, graph::Loss seat) {
@@ -35,6 +37,43 @@ std::vector<std::size_t> visits_of(const MapState& state, std::size_t landmark) 
     if (state.observations[v].landmark == landmark) out.push_back(v);
   return out;
 }
+
+/// Where a landmark stands; of a wall nobody knows where along it.
+std::optional<Eigen::Vector2d> place_of(const graph::Landmark& landmark) {
+  if (landmark.kind == LandmarkKind::Wall) return std::nullopt;
+  return Eigen::Vector2d(landmark.x[0], landmark.x[1]);
+}
+
+/// A closure that might be: `landmark` is what stands for `candidate`, too.
+struct Pair {
+  std::size_t landmark;
+  Candidate candidate;
+};
+
+/// Whether both closures would move what was seen later by about the same.
+bool agree(const graph::Graph& graph, const Pair& a, const Pair& b) {
+  if (a.landmark == b.landmark || a.candidate.landmark == b.candidate.landmark) return false;
+  const auto move = [&](const Pair& pair) -> std::optional<Eigen::Vector2d> {
+    const auto from = place_of(graph.landmarks[pair.landmark]), to = place_of(graph.landmarks[pair.candidate.landmark]);
+    return from ? std::optional<Eigen::Vector2d>(*to - *from) : std::nullopt;
+  };
+  const auto x = move(a), y = move(b);
+  return !x || !y || (*x - *y).norm() < kAlike;
+}
+
+/// One closure and those that it makes likely.
+struct JointHypothesis {
+  MapState state;
+  std::vector<std::array<std::size_t, 2>> pairs;  ///< landmark, candidate
+  double evidence;
+
+  [[nodiscard]] bool contradicts(const JointHypothesis& other) const {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const auto& a) {
+      return std::any_of(other.pairs.begin(), other.pairs.end(),
+                         [&](const auto& b) { return (a[0] == b[0]) != (a[1] == b[1]); });
+    });
+  }
+};
 
 std::array<std::size_t, 2> ordered(std::size_t a, std::size_t b) { return {std::min(a, b), std::max(a, b)}; }
 
@@ -132,7 +171,54 @@ bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   if (const auto marginals = graph::Marginals::compute(state.graph))
     if (close(state, newcomer, *marginals, candidates(state, newcomer, *marginals, config_.association))) return true;
   state.landmarks[newcomer].id = next_id_++;
-  return false;
+  return close_jointly(state);
+}
+
+bool LoopCloser::is_contradicted(std::size_t a, std::size_t b) const {
+  return std::find(contradicted_.begin(), contradicted_.end(), ordered(a, b)) != contradicted_.end();
+}
+
+bool LoopCloser::close_jointly(MapState& state) {
+  const auto& config = config_.association;
+  const auto marginals = graph::Marginals::compute(state.graph);
+  if (!marginals) return false;
+  std::vector<Pair> open;
+  for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
+    if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;
+    for (const Candidate& c : candidates(state, k, *marginals, config))
+      if (c.landmark < k && c.evidence > kUnlikely && !is_contradicted(k, c.landmark)) open.push_back({k, c});
+  }
+  const double apart = open.size() < 2 ? 0.0 : free_space_cost(state, &*marginals, config.free_space_most);
+  std::vector<JointHypothesis> hypotheses;
+  for (const Pair& first : open) {
+    if (std::none_of(open.begin(), open.end(), [&](const Pair& p) { return agree(state.graph, first, p); })) continue;
+    Trial trial = attempt(state, first.landmark, first.candidate);
+    const auto closed = graph::Marginals::compute(trial.state.graph);
+    if (trial.cost_increase > config.max_cost_increase || !closed) continue;
+    JointHypothesis joint{
+        std::move(trial.state), {{first.landmark, first.candidate.landmark}}, first.candidate.evidence};
+    joint.evidence += apart - free_space_cost(joint.state, &*closed, config.free_space_most);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const std::size_t landmark = open[k].landmark;
+      if (landmark == first.landmark || (k > 0 && open[k - 1].landmark == landmark)) continue;
+      const auto likely = candidates(joint.state, landmark, *closed, config);
+      if (likely.empty() || likely[0].landmark > landmark || likely[0].evidence < config.min_evidence) continue;
+      joint.evidence += likely[0].evidence;
+      joint.pairs.push_back({landmark, likely[0].landmark});
+    }
+    if (joint.pairs.size() > 1) hypotheses.push_back(std::move(joint));
+  }
+  const auto best = std::max_element(hypotheses.begin(), hypotheses.end(),
+                                     [](const auto& a, const auto& b) { return a.evidence < b.evidence; });
+  if (best == hypotheses.end() || best->evidence < config.min_evidence) return false;
+  const bool clear = std::none_of(hypotheses.begin(), hypotheses.end(), [&](const JointHypothesis& other) {
+    return best->contradicts(other) && best->evidence - other.evidence <= config.ambiguity;
+  });
+  if (!clear) return false;
+  state = std::move(best->state);
+  ++state.summary.loop_closures;
+  contradicted_.clear();
+  return true;
 }
 
 bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
@@ -168,9 +254,7 @@ bool LoopCloser::reconsider(MapState& state) {
   for (std::size_t k = state.graph.landmarks.size(); marginals && k-- > 0;) {
     if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;
     auto found = candidates(state, k, *marginals, config_.association);
-    std::erase_if(found, [&](const Candidate& c) {
-      return std::find(contradicted_.begin(), contradicted_.end(), ordered(k, c.landmark)) != contradicted_.end();
-    });
+    std::erase_if(found, [&](const Candidate& c) { return is_contradicted(k, c.landmark); });
     if (found.empty() || !close(state, k, *marginals, found)) continue;
     any = true;
     marginals = graph::Marginals::compute(state.graph);

@@ -65,6 +65,12 @@ class LoopCloser {
   /// True when it was accepted; `state` is optimised then.
   bool close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals, std::vector<Candidate> found);
 
+  /// After a long way what was seen before and after it can be too little evidence each, and certain together: where
+  /// one closure makes others of the newest objects likely, it is taken. True when it was.
+  bool close_jointly(MapState& state);
+
+  [[nodiscard]] bool is_contradicted(std::size_t a, std::size_t b) const;
+
   MapperConfig config_;
   std::vector<std::array<std::size_t, 2>>
       contradicted_;  ///< pairs that an optimum spoke against since the last closure

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 
 namespace kinemap {
@@ -88,6 +89,63 @@ TEST(Candidates, AreThoseWithinWhatASuitTwiceAsBadWouldDrift) {
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].evidence > 0.0, doubt > 1.0) << found[0].evidence;
   }
+}
+
+/// Two seats 2 m apart, a way of which little is known (0.8 m), and two seats again, so far from where the first ones
+/// are as `off` says.
+MapState seats_before_and_after_a_long_way(const std::array<double, 2>& off) {
+  MapState state;
+  const std::array<Eigen::Vector2d, 4> at{{{0.0, 0.0}, {0.0, 2.0}, {off[0], 0.0}, {off[1], 2.0}}};
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    state.graph.poses.push_back(level_pose({at[k].x(), at[k].y(), 0.0}, 0.0));
+    if (k == 0) {
+      state.graph.priors.push_back({0, state.graph.poses[0], graph::Matrix6::Identity() * 1e3});
+    } else {
+      graph::Matrix6 information = graph::Matrix6::Identity() * 1e2;
+      if (k == 2) information.diagonal().head<2>().setConstant(1.0 / 0.8);
+      state.graph.between.push_back(
+          {k - 1, k, state.graph.poses[k - 1].inverse() * state.graph.poses[k], information, {}});
+    }
+    graph::Landmark seat;
+    seat.kind = graph::LandmarkKind::Seat;
+    seat.x = {at[k].x() + 1.0, at[k].y(), 0.45, 0.0, 0.0, 0.0, 0.0};
+    state.graph.landmarks.push_back(seat);
+    const double time = 10.0 * static_cast<double>(k);
+    state.landmarks.push_back({k < 3 ? static_cast<std::uint32_t>(k + 1) : 0, 1, time, time + 5.0, 0.0});
+    graph::SeatFactor factor;
+    factor.i = k;
+    factor.landmark = k;
+    factor.T_i_seat = level_pose({1.0, 0.0, 0.45}, 0.0);
+    factor.sigma_level_m = 0.06, factor.sigma_z_m = 0.03, factor.sigma_heading_rad = 0.15;
+    state.graph.seats.push_back(factor);
+    state.observations.push_back({k, k, 0, 0, k, time, time + 5.0});
+  }
+  return state;
+}
+
+TEST(JointClosure, WhatIsUncertainAloneIsCertainTogether) {
+  constexpr double kDrift = 1.4;  // m
+  MapState state = seats_before_and_after_a_long_way({kDrift, kDrift});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  const auto marginals = graph::Marginals::compute(state.graph);
+  ASSERT_TRUE(marginals);
+  for (const std::size_t seat : {2U, 3U})
+    for (const Candidate& c : candidates(state, seat, *marginals, MapperConfig{}.association))
+      EXPECT_LT(c.evidence, 0.0) << seat << " alone";
+  EXPECT_TRUE(closer.resolve(state, 3));
+  closer.reconsider(state);
+  for (const std::size_t seat : {2U, 3U}) EXPECT_FALSE(state.graph.landmarks[seat].active) << seat;
+  EXPECT_NEAR(state.graph.poses[3].p.x(), 0.0, 0.1);
+  EXPECT_EQ(state.summary.loop_closures, 2U);
+}
+
+TEST(JointClosure, NotWhatDoesNotFitTogether) {
+  MapState state = seats_before_and_after_a_long_way({1.4, 0.4});
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_FALSE(closer.resolve(state, 3));
+  for (const std::size_t seat : {2U, 3U}) EXPECT_TRUE(state.graph.landmarks[seat].active) << seat;
 }
 
 TEST(Split, TheVisitTakesItsFactorsAndTimesWithIt) {

@@ -200,9 +200,9 @@ class Mapper::Impl {
   void publish() {
     auto map = std::make_shared<MapSnapshot>();
     const auto walls = cut_walls(state_, config_.walls);
-    graph::Graph as_found = state_.graph;
-    as_found.noise = noise_;
-    const auto marginals = graph::Marginals::compute(as_found);
+    const graph::NoiseScales expected = std::exchange(state_.graph.noise, noise_);  // of this session, to be published
+    const auto marginals = graph::Marginals::compute(state_.graph);
+    state_.graph.noise = expected;
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kProbe = 50;     // every so many key poses the way is looked at
 constexpr double kKnown = 0.3;         // m: standard deviation of a place that is well known
-constexpr double kOffWay = 0.05;       // m: a pose so near to where it would be looked for is not kept
-constexpr double kOffHeading = 0.17;   // rad
+constexpr double kOffWay = 0.08;       // m: a pose so near to where it would be looked for is not kept
+constexpr double kOffHeading = 0.35;   // rad
 constexpr std::size_t kLongest = 200;  // key poses between two that are kept
 
 struct Range {

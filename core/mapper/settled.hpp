@@ -22,7 +22,7 @@ namespace kinemap {
 std::size_t first_unsettled_pose(const MapState& state, const graph::Marginals& marginals,
                                  const MapperConfig::Solver& config);
 
-/// Which poses of a way have to stay for the others to be found between them, by the time, to 5 cm and 10°: the first,
+/// Which poses of a way have to stay for the others to be found between them, by the time, to 8 cm and 20°: the first,
 /// the last, those in `wanted` (ascending indices), and as few more as that takes. Ascending indices into `way`.
 std::vector<std::size_t> poses_to_keep(const std::vector<TrajectoryPose>& way, const std::vector<std::size_t>& wanted);
 

@@ -10,6 +10,7 @@
 
 #include "protocol/map_json.hpp"
 #include "tools/bench/document.hpp"
+#include "tools/bench/ideal.hpp"
 #include "tools/bench/levers.hpp"
 #include "tools/bench/worst_cases.hpp"
 
@@ -43,6 +44,31 @@ std::vector<sim::SimOptions> short_sessions() {
   base.rooms = 1;
   base.rounds = 1;
   return sessions_of({1, 2}, base);
+}
+
+TEST(Ideal, KnowsSizesAsWellAsTheSuitIs) {
+  double suit_way[2] = {}, true_way[2] = {};
+  std::size_t n = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const auto drift : {sim::Severity::Good, sim::Severity::Bad}) {
+      sim::SimOptions options;
+      options.seed = seed;
+      options.rounds = 2;
+      options.drift = drift;
+      const auto sizes = ideal_sizes(options);
+      ASSERT_TRUE(sizes) << sizes.error();
+      for (const IdealSize& size : *sizes) {
+        suit_way[drift == sim::Severity::Bad] += size.suit_way_percent;
+        true_way[drift == sim::Severity::Bad] += size.true_way_percent;
+        n += drift == sim::Severity::Bad ? 1 : 0;
+      }
+    }
+  }
+  ASSERT_GE(n, 8u);
+  EXPECT_LT(suit_way[0] / static_cast<double>(n), 2.5);
+  EXPECT_LT(suit_way[1] / static_cast<double>(n), 15.0);
+  EXPECT_GT(suit_way[1], 2.0 * suit_way[0]);
+  EXPECT_LT(true_way[1], suit_way[1]);
 }
 
 TEST(Levers, EachChangesTheConfiguration) {
@@ -101,7 +127,7 @@ TEST_F(BenchTest, TheDocumentHasItsPicturesAndNoOthers) {
   auto runs = run_sessions(short_sessions(), {Config{}}, run_options(0));
   ASSERT_TRUE(runs);
   Study study;
-  study.columns.push_back({"default", (*runs)[0]});
+  study.columns.push_back({"default", (*runs)[0], {}});
   study.ablation.push_back({levers()[0], (*runs)[0]});
   study.sparse = (*runs)[0];
   study.sparse_spacing_m = 30.0;

@@ -44,7 +44,7 @@ std::string tables(const Study& study) {
             eval::association_markdown(report) + '\n' + eval::consistency_markdown(report) + '\n' +
             session_table(column.sessions) + '\n';
   }
-  text += scale_table(study.columns) + '\n';
+  text += scale_table(study.columns) + '\n' + ideal_table(study.columns) + '\n';
   if (!study.ablation.empty()) text += ablation_table(study.columns[study.ablated], study.ablation) + '\n';
   if (!study.sparse.empty()) text += sparse_text(study.sparse) + '\n';
   return text + nothing_text(study);

@@ -122,6 +122,14 @@ void limits(Document& document, const Study& study) {
       "so no closure sees a wrong step length; the last column takes the scale of each session's trajectory (true over "
       "estimated extent) out of its walls.\n\n" +
       scale_table(study.columns) + '\n');
+  document.add(
+      "What the hand does not tell: the arm errs by centimetres for seconds, and metal turns the heading while one "
+      "draws. The ideal estimator is the best linear unbiased one, given what nobody knows: the point that touches, "
+      "when the hand touches and along which side, and the covariance of all errors of the column "
+      "(`tools/bench/ideal.hpp`). It has each gesture by itself, with the way as the suit reports it, then with the "
+      "true one: loops that close can bring a map from the one towards the other, not beyond. Only screens and tables "
+      "of which one gesture drew all four sides.\n\n" +
+      ideal_table(study.columns) + '\n');
 }
 
 void ablation(Document& document, const Study& study) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tools/bench/parallel.hpp"
 #include "tools/bench/temporary_directory.hpp"
 #include "tools/kinemap/batch.hpp"
 
@@ -27,11 +28,24 @@ Result<std::vector<Session>> run(const std::vector<sim::SimOptions>& sessions, c
   return std::move(runs->front());
 }
 
+Result<std::vector<std::vector<IdealSize>>> run_ideal(const std::vector<sim::SimOptions>& sessions, int jobs) {
+  std::vector<std::optional<Result<std::vector<IdealSize>>>> done(sessions.size());
+  parallel_for(sessions.size(), jobs, [&](std::size_t i) { done[i] = ideal_sizes(sessions[i]); });
+  std::vector<std::vector<IdealSize>> out;
+  for (auto& sizes : done) {
+    if (!*sizes) return Error{sizes->error()};
+    out.push_back(std::move(**sizes));
+  }
+  return out;
+}
+
 std::optional<Error> run_columns(const StudyOptions& options, Study& study) {
   for (const std::string& drift : options.drifts) {
     auto sessions = run(sessions_of(options, drift), options, drift + " drift");
     if (!sessions) return Error{drift + " drift, " + sessions.error()};
-    study.columns.push_back({drift, std::move(*sessions)});
+    auto ideal = run_ideal(sessions_of(options, drift), options.run.jobs);
+    if (!ideal) return Error{drift + " drift, " + ideal.error()};
+    study.columns.push_back({drift, std::move(*sessions), std::move(*ideal)});
   }
   return std::nullopt;
 }

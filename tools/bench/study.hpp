@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/bench/accuracy.hpp"
+#include "tools/bench/ideal.hpp"
 #include "tools/bench/levers.hpp"
 
 namespace kinemap::bench {
@@ -24,6 +25,7 @@ inline constexpr PaperRow kPaper[] = {{eval::Class::Table, 36, 26.3, 8.7},
 struct Column {
   std::string drift;
   std::vector<Session> sessions;
+  std::vector<std::vector<IdealSize>> ideal;  ///< one list for each session
 };
 
 /// The same sessions with one lever off.

@@ -147,6 +147,32 @@ std::string scale_table(const std::vector<Column>& columns) {
   return text;
 }
 
+std::string ideal_table(const std::vector<Column>& columns) {
+  std::string text =
+      "| drift | class | edge error here % | the ideal estimator's % | … with the true way % "
+      "|\n|---|---|---|---|---|\n";
+  for (const Column& column : columns) {
+    for (const eval::Class klass : {eval::Class::Table, eval::Class::BigScreen, eval::Class::SmallScreen}) {
+      std::vector<double> here, suit_way, true_way;
+      for (std::size_t k = 0; k < column.ideal.size(); ++k) {
+        for (const eval::Match& match : column.sessions[k].evaluation.matches) {
+          const auto& ideal = column.ideal[k];
+          const auto same = std::ranges::find(ideal, match.truth_id, &IdealSize::truth_id);
+          if (match.klass != klass || same == ideal.end()) continue;
+          here.push_back(match.mape_percent());
+          suit_way.push_back(same->suit_way_percent);
+          true_way.push_back(same->true_way_percent);
+        }
+      }
+      if (here.empty()) continue;
+      text +=
+          format("| %s | %s, n %zu | %.1f | %.1f | %.1f |\n", column.drift.c_str(), eval::to_string(klass), here.size(),
+                 eval::spread_of(here).mean, eval::spread_of(suit_way).mean, eval::spread_of(true_way).mean);
+    }
+  }
+  return text;
+}
+
 std::string ablation_table(const Column& full, const std::vector<LeverRuns>& ablation) {
   std::string text =
       "| | tables % | big % | small % | walls % | RMSE m | found % | false | double | wrong visits | what that means "

@@ -19,6 +19,8 @@ std::string better_text(const std::vector<Column>& columns);
 std::string session_table(const std::vector<Session>& sessions);
 /// Walls as they are, those whose neighbours were touched, and these with the scale of the trajectory taken out.
 std::string scale_table(const std::vector<Column>& columns);
+/// Screens and tables that were drawn all round, beside what the best linear unbiased estimator makes of them.
+std::string ideal_table(const std::vector<Column>& columns);
 std::string ablation_table(const Column& full, const std::vector<LeverRuns>& ablation);
 /// Is the map still right but for its measures?
 std::string sparse_text(const std::vector<Session>& sessions);

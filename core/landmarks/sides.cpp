@@ -73,6 +73,9 @@ struct Path {
 };
 
 Path cheapest(const std::vector<Costs>& costs, bool forward, const SideCosts& price) {
+  std::array<Costs, kStates> steps;  // to, from
+  for (std::size_t to = 0; to < kStates; ++to)
+    for (std::size_t from = 0; from < kStates; ++from) steps[to][from] = step_cost(from, to, forward, price);
   std::vector<std::array<std::uint8_t, kStates>> came(costs.size());
   Costs best = costs.front();
   for (std::size_t i = 1; i < costs.size(); ++i) {
@@ -80,7 +83,7 @@ Path cheapest(const std::vector<Costs>& costs, bool forward, const SideCosts& pr
     for (std::size_t to = 0; to < kStates; ++to) {
       double least = HUGE_VAL;
       for (std::size_t from = 0; from < kStates; ++from) {
-        const double cost = best[from] + step_cost(from, to, forward, price);
+        const double cost = best[from] + steps[to][from];
         if (cost < least) least = cost, came[i][to] = static_cast<std::uint8_t>(from);
       }
       next[to] = least + costs[i][to];

@@ -228,8 +228,8 @@ class Mapper::Impl {
     map->revision = snapshot_->revision + 1;
     map->time_s = time_s_;
     const auto& key_poses = odometry_.key_poses();
-    map->trajectory = settled_way_;
     map->trajectory.reserve(state_.graph.poses.size());
+    map->trajectory.assign(settled_way_.begin(), settled_way_.end());
     for (std::size_t k = settled_way_.empty() ? 0 : 1; k < key_poses.size(); ++k)
       map->trajectory.push_back(trajectory_pose(k));
     if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();

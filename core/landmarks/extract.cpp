@@ -233,9 +233,15 @@ Attempt classify(std::span<const TracePoint> points, const Surface& surface, dou
   return contour.observation || contour.part_of_screen ? contour : wall(points, surface, floor_z, config);
 }
 
-/// A screen whose contour metal has bent so far that it lies on no one surface, or does not close, or fits clearly
-/// better when it is straightened: the screen that it is without the turn of the heading.
-std::optional<Observation> bent_screen(std::span<const TracePoint> points, const LandmarkConfig& config) {
+void shift(Observation& observation, std::size_t by) {
+  for (auto& index : observation.contacts) index += by;
+}
+
+/// A screen whose contour, points[begin, end), metal has bent so far that it lies on no one surface, or does not close,
+/// or fits clearly better when it is straightened: the screen that it is without the turn of the heading.
+std::optional<Observation> bent_screen(std::span<const TracePoint> all, IndexRange range,
+                                       const LandmarkConfig& config) {
+  const auto points = all.subspan(range.begin, range.end - range.begin);
   const auto [low, high] =
       std::minmax_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.p.z() < b.p.z(); });
   if (points.size() < 8 || high->p.z() - low->p.z() < config.rectangle_min_side_m) return std::nullopt;
@@ -245,11 +251,10 @@ std::optional<Observation> bent_screen(std::span<const TracePoint> points, const
     return Attempt{};
   };
   const double rate = heading_rate(points, [&](std::span<const TracePoint> tried) { return attempt(tried).misfit; });
-  return rate == 0.0 ? std::nullopt : attempt(unbent(points, rate)).observation;
-}
-
-void shift(Observation& observation, std::size_t by) {
-  for (auto& index : observation.contacts) index += by;
+  if (rate == 0.0) return std::nullopt;
+  auto straightened = attempt(unbent(points, rate)).observation;
+  if (straightened) shift(*straightened, range.begin);
+  return straightened;
 }
 
 /// What most of points[begin, end) were drawn on.
@@ -298,12 +303,8 @@ bool comes_back(std::span<const TracePoint> points, IndexRange range) {
 std::optional<Observation> single_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
                                          const LandmarkConfig& config) {
   auto found = main_object(points, range, floor_z, config).observation;
-  if (!(found && is_rectangle(*found)) && comes_back(points, range)) {
-    if (auto bent = bent_screen(points.subspan(range.begin, range.end - range.begin), config)) {
-      shift(*bent, range.begin);
-      found = std::move(bent);
-    }
-  }
+  if (!(found && is_rectangle(*found)) && comes_back(points, range))
+    if (auto bent = bent_screen(points, range, config)) found = std::move(bent);
   const auto all = static_cast<double>(range.end - range.begin);
   if (found && static_cast<double>(found->contacts.size()) < kMostOfAPart * all) found.reset();
   return found;
@@ -436,8 +437,7 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
   const bool rectangles =
       main.observation ? main.observation->landmark.kind == LandmarkKind::Table : all_rectangles(out.observations);
   if (!rectangles) {
-    if (auto bent = bent_screen(points.subspan(drawn.begin, drawn.end - drawn.begin), config)) {
-      shift(*bent, drawn.begin);
+    if (auto bent = bent_screen(points, drawn, config)) {
       out.observations.clear();
       main.contacts = {bent->contacts.front(), bent->contacts.back() + 1};
       main.observation = std::move(bent);

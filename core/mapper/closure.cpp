@@ -38,27 +38,22 @@ std::vector<std::size_t> visits_of(const MapState& state, std::size_t landmark) 
   return out;
 }
 
-/// Where a landmark stands; of a wall nobody knows where along it.
-std::optional<Eigen::Vector2d> place_of(const graph::Landmark& landmark) {
-  if (landmark.kind == LandmarkKind::Wall) return std::nullopt;
-  return Eigen::Vector2d(landmark.x[0], landmark.x[1]);
-}
-
 /// A closure that might be: `landmark` is what stands for `candidate`, too.
 struct Pair {
   std::size_t landmark;
   Candidate candidate;
 };
 
-/// Whether both closures would move what was seen later by about the same.
-bool agree(const graph::Graph& graph, const Pair& a, const Pair& b) {
+/// Whether both closures would move what was seen later by about the same. Of a wall nobody knows where along it.
+bool agree(const std::vector<graph::Landmark>& landmarks, const Pair& a, const Pair& b) {
   if (a.landmark == b.landmark || a.candidate.landmark == b.candidate.landmark) return false;
-  const auto move = [&](const Pair& pair) -> std::optional<Eigen::Vector2d> {
-    const auto from = place_of(graph.landmarks[pair.landmark]), to = place_of(graph.landmarks[pair.candidate.landmark]);
-    return from ? std::optional<Eigen::Vector2d>(*to - *from) : std::nullopt;
+  for (const Pair& pair : {a, b})
+    if (landmarks[pair.landmark].kind == LandmarkKind::Wall) return true;
+  const auto move = [&](const Pair& pair) -> Eigen::Vector3d {
+    return graph::landmark_pose(landmarks[pair.candidate.landmark]).p -
+           graph::landmark_pose(landmarks[pair.landmark]).p;
   };
-  const auto x = move(a), y = move(b);
-  return !x || !y || (*x - *y).norm() < kAlike;
+  return (move(a) - move(b)).head<2>().norm() < kAlike;
 }
 
 /// One closure and those that it makes likely.
@@ -168,30 +163,30 @@ bool LoopCloser::align(MapState& state) const {
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   settle(state, config_.solver.closure_iterations);  // candidates are judged at an optimum
   if (state.graph.landmarks[newcomer].kind == LandmarkKind::Wall) align(state);
-  if (const auto marginals = graph::Marginals::compute(state.graph))
-    if (close(state, newcomer, *marginals, candidates(state, newcomer, *marginals, config_.association))) return true;
+  const auto marginals = graph::Marginals::compute(state.graph);
+  if (marginals && close(state, newcomer, *marginals, candidates(state, newcomer, *marginals, config_.association)))
+    return true;
   state.landmarks[newcomer].id = next_id_++;
-  return close_jointly(state);
+  return marginals && close_jointly(state, *marginals);
 }
 
 bool LoopCloser::is_contradicted(std::size_t a, std::size_t b) const {
   return std::find(contradicted_.begin(), contradicted_.end(), ordered(a, b)) != contradicted_.end();
 }
 
-bool LoopCloser::close_jointly(MapState& state) {
+bool LoopCloser::close_jointly(MapState& state, const graph::Marginals& marginals) {
   const auto& config = config_.association;
-  const auto marginals = graph::Marginals::compute(state.graph);
-  if (!marginals) return false;
   std::vector<Pair> open;
   for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
     if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;
-    for (const Candidate& c : candidates(state, k, *marginals, config))
+    for (const Candidate& c : candidates(state, k, marginals, config))
       if (c.landmark < k && c.evidence > kUnlikely && !is_contradicted(k, c.landmark)) open.push_back({k, c});
   }
-  const double apart = open.size() < 2 ? 0.0 : free_space_cost(state, &*marginals, config.free_space_most);
+  const double apart = open.size() < 2 ? 0.0 : free_space_cost(state, &marginals, config.free_space_most);
   std::vector<JointHypothesis> hypotheses;
   for (const Pair& first : open) {
-    if (std::none_of(open.begin(), open.end(), [&](const Pair& p) { return agree(state.graph, first, p); })) continue;
+    if (std::none_of(open.begin(), open.end(), [&](const Pair& p) { return agree(state.graph.landmarks, first, p); }))
+      continue;
     Trial trial = attempt(state, first.landmark, first.candidate);
     const auto closed = graph::Marginals::compute(trial.state.graph);
     if (trial.cost_increase > config.max_cost_increase || !closed) continue;

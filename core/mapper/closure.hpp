@@ -66,8 +66,8 @@ class LoopCloser {
   bool close(MapState& state, std::size_t newcomer, const graph::Marginals& marginals, std::vector<Candidate> found);
 
   /// After a long way what was seen before and after it can be too little evidence each, and certain together: where
-  /// one closure makes others of the newest objects likely, it is taken. True when it was.
-  bool close_jointly(MapState& state);
+  /// one closure makes others likely, it is taken. True when it was. `marginals`: of `state`.
+  bool close_jointly(MapState& state, const graph::Marginals& marginals);
 
   [[nodiscard]] bool is_contradicted(std::size_t a, std::size_t b) const;
 

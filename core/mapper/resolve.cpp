@@ -24,13 +24,12 @@ enum class Seam : std::uint8_t {
 constexpr Seam kSeams[] = {Seam::WithoutWay, Seam::WithWay, Seam::OnSurface};
 
 /// The gesture without what is no contact at its ends.
-Trace without_ends(const Trace& trace, const std::vector<TracePoint>& points, double floor_z,
-                   const LandmarkConfig& config, Seam seam, bool first) {
-  IndexRange kept =
-      seam == Seam::OnSurface ? extract_landmarks(points, floor_z, config).tried : without_reach(points, config);
+Trace without_ends(const ResolvedTrace& gesture, const LandmarkConfig& config, Seam seam, bool first) {
+  const Trace& trace = gesture.trace;
+  IndexRange kept = seam == Seam::OnSurface ? gesture.extraction.tried : without_reach(gesture.points, config);
   if (seam == Seam::WithoutWay) {
     std::vector<Eigen::Vector2d> flat;
-    for (std::size_t i = kept.begin; i < kept.end; ++i) flat.emplace_back(points[i].p.head<2>());
+    for (std::size_t i = kept.begin; i < kept.end; ++i) flat.emplace_back(gesture.points[i].p.head<2>());
     const IndexRange drawn = without_way(flat, config);
     if (first)
       kept.end = kept.begin + drawn.end;
@@ -55,15 +54,14 @@ bool is_one_rectangle(const Extraction& extraction, std::size_t second) {
   return share >= kLeastShare && share <= 1.0 - kLeastShare;
 }
 
-/// Both gestures as one, if one rectangle was drawn in them.
-std::optional<ResolvedTrace> joined(const Trace& before, const Trace& after, const graph::Graph& graph,
+/// Both gestures, in neither of which anything was found, as one, if one rectangle was drawn in them.
+std::optional<ResolvedTrace> joined(const ResolvedTrace& before, const ResolvedTrace& after, const graph::Graph& graph,
                                     std::size_t touch, double floor_z, LandmarkConfig config, Seam seam) {
-  ResolvedTrace both{
-      without_ends(before, trace_points(before, graph, touch), floor_z, config, seam, true), {}, {}, true};
+  ResolvedTrace both{without_ends(before, config, seam, true), {}, {}, true};
   const std::size_t second = both.trace.contacts.size();
-  const Trace next = without_ends(after, trace_points(after, graph, touch), floor_z, config, seam, false);
+  const Trace next = without_ends(after, config, seam, false);
   both.trace.contacts.insert(both.trace.contacts.end(), next.contacts.begin(), next.contacts.end());
-  both.trace.end_s = after.end_s;
+  both.trace.end_s = after.trace.end_s;
   both.points = trace_points(both.trace, graph, touch);
   if (second == 0 || second == both.points.size() || (both.points[second].p - both.points[second - 1].p).norm() > kNear)
     return std::nullopt;
@@ -79,15 +77,20 @@ std::optional<ResolvedTrace> joined(const Trace& before, const Trace& after, con
 }  // namespace
 
 ResolvedTrace TraceResolver::resolve(const Trace& trace, const graph::Graph& graph, std::size_t touch, double floor_z) {
-  ResolvedTrace alone{trace, trace_points(trace, graph, touch), {}, false};
-  alone.extraction = extract_landmarks(alone.points, floor_z, config_);
+  const auto resolved = [&](const Trace& gesture) {
+    ResolvedTrace out{gesture, trace_points(gesture, graph, touch), {}, false};
+    out.extraction = extract_landmarks(out.points, floor_z, config_);
+    return out;
+  };
+  ResolvedTrace alone = resolved(trace);
   const std::optional<Trace> before = std::exchange(open_, std::nullopt);
   if (!alone.extraction.observations.empty()) return alone;
   open_ = trace;
   if (!before || trace.begin_s - before->end_s > kSoon) return alone;
 
+  const ResolvedTrace first = resolved(*before);  // again: the map has moved since
   for (const Seam seam : kSeams) {
-    if (auto both = joined(*before, trace, graph, touch, floor_z, config_, seam)) {
+    if (auto both = joined(first, alone, graph, touch, floor_z, config_, seam)) {
       open_.reset();
       return *both;
     }

@@ -168,18 +168,31 @@ TEST(Extract, TwoScreensFarApartInOneGesture) {
   EXPECT_NEAR(found.observations[1].landmark.x[4], 1.3, 0.02);
 }
 
-/// Side by side on one desk they lie in one plane, which looks like a wall that was waved along.
+/// Side by side on one desk they lie in one plane, and a hand that begins at the one's far side and ends at the other's
+/// got as far as along a wall.
 TEST(Extract, TwinScreensInOneGesture) {
-  const auto first = round_trip(upright_rectangle({0.6, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.57, 0.33));
-  const auto second = round_trip(upright_rectangle({0.0, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.57, 0.33));
-  std::vector<Eigen::Vector3d> path = first;
-  path.insert(path.end(), second.begin(), second.end());
-  const auto found = extract_landmarks(trace(path, {.speed_m_per_s = 0.2}), 0.0, kConfig);
-  ASSERT_EQ(found.observations.size(), 2u) << found.reason;
-  for (const auto& seen : found.observations) {
-    EXPECT_EQ(seen.landmark.kind, LandmarkKind::Screen);
-    EXPECT_NEAR(seen.landmark.x[4], 0.57, 0.03);
-    EXPECT_NEAR(seen.landmark.x[5], 0.33, 0.03);
+  const auto drawn_from = [](double x, int corner, bool backwards) {
+    auto corners = upright_rectangle({x, 1.5, 1.2}, -std::numbers::pi / 2.0, 0.57, 0.33);
+    std::rotate(corners.begin(), corners.begin() + corner, corners.end());
+    if (backwards) std::reverse(corners.begin() + 1, corners.end());
+    return round_trip(std::move(corners));
+  };
+  struct Case {
+    int first_corner, second_corner;
+    bool first_backwards, second_backwards;
+  };
+  for (const Case& c : {Case{1, 2, false, true}, Case{1, 3, true, true}, Case{2, 1, false, false}}) {
+    SCOPED_TRACE(testing::Message() << "from corners " << c.first_corner << " and " << c.second_corner);
+    auto path = drawn_from(0.6, c.first_corner, c.first_backwards);
+    const auto second = drawn_from(0.0, c.second_corner, c.second_backwards);
+    path.insert(path.end(), second.begin(), second.end());
+    const auto found = extract_landmarks(trace(path, {.speed_m_per_s = 0.2}), 0.0, kConfig);
+    ASSERT_EQ(found.observations.size(), 2u) << found.reason;
+    for (const auto& seen : found.observations) {
+      EXPECT_EQ(seen.landmark.kind, LandmarkKind::Screen);
+      EXPECT_NEAR(seen.landmark.x[4], 0.57, 0.03);
+      EXPECT_NEAR(seen.landmark.x[5], 0.33, 0.03);
+    }
   }
 }
 

@@ -80,7 +80,7 @@ def session(arguments, recording, folder, directory, moments=(), disk=None):
         wrong += ["entries were lost"] if journal()["lost_entries"] else []
     while not suit.ended:
         time.sleep(0.05)
-    time.sleep(4.5)  # after 3 s of silence the map is settled
+    daemon.settle()
     final = daemon.get("map")
     log = "".join(daemon.log)
     if log.count("cannot be written") != len(moments) or log.count("is written again, nothing is missing") != len(moments):

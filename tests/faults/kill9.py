@@ -90,7 +90,7 @@ def run_session(arguments, recording, config, state, kills, held, key_poses, log
     suit.running.set()
     while not suit.ended:
         time.sleep(0.05)
-    time.sleep(4.5)  # after 3 s of silence the map is settled
+    daemon.settle()
     final, poses = daemon.get("map"), daemon.get("trajectory")["poses"]
     daemon.kill()
     return final, [p["time"] for p in poses]

@@ -87,6 +87,25 @@ class Daemon:
         except urllib.error.HTTPError:
             return 0.0
 
+    def get_text(self, path):
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/{path}", timeout=self.answers_within_s) as answer:
+            return answer.read().decode()
+
+    def settle(self):
+        """Until the map is settled, 3 s after the suit's last frame, however busy the machine is."""
+        def at_rest():
+            metrics = self.get_text("metrics")
+            silence = float(re.search(r"^kinemap_suit_silence_seconds (\S+)", metrics, re.M)[1])
+            waiting = sum(float(n) for n in re.findall(r"^kinemap_ring_depth\S* (\S+)", metrics, re.M))
+            age = float(re.search(r"^kinemap_solver_entry_age_seconds (\S+)", metrics, re.M)[1])
+            return silence > 4.0 and waiting == 0 and age == 0 and self.get("map")["time"] == self.pose_time()
+        end, rests = time.monotonic() + 120, 0
+        while rests < 3:  # between two entries the solver is at none
+            rests = rests + 1 if at_rest() else 0
+            if time.monotonic() > end:
+                sys.exit("the map is not settled two minutes after the suit's last frame:\n" + "".join(self.log))
+            time.sleep(0.1)
+
     def restored(self):
         end = time.monotonic() + 60
         while time.monotonic() < end:

@@ -36,7 +36,7 @@ def main():
         suit.running.set()
         while not suit.ended:
             time.sleep(0.05)
-        time.sleep(4.5)  # after 3 s of silence the map is settled
+        daemon.settle()
         live, recorded = daemon.get("map"), daemon.get("status")["recording"]
         daemon.process.terminate()
         daemon.process.wait()

@@ -27,6 +27,12 @@ constexpr Lever kLevers[] = {
      R"({"mapper": {"association": {"doubt": 1, "gate_sigma": 4.5}}})"},
     {"no free space", "that nobody walks through things counts neither for nor against a closure",
      R"({"mapper": {"association": {"free_space_most": 0}}})"},
+    {"each closure by itself", "closures that bear each other out are not taken together",
+     R"({"mapper": {"association": {"joint_evidence": 1000}}})"},
+    {"nothing waits", "the better of two candidates is taken however little the other one is behind",
+     R"({"mapper": {"association": {"ambiguity": 0}}})"},
+    {"no second thoughts", "a visit stays on its object, whatever the optimum says",
+     R"({"mapper": {"association": {"min_relief": 1000000}}})"},
     {"closures never refused", "a closure stays however much it costs",
      R"({"mapper": {"association": {"max_cost_increase": 1000000}}})"},
 };

@@ -21,15 +21,18 @@ from kinemapd import PLACE_M, Daemon, Suit, datagrams, moved
 
 
 def missing(announced, restored):
-    """Objects of the first map that are not in the second, or elsewhere. The second may know more: what was on the disk and not announced yet; that
-    may have moved things, so places are compared where both are of the same revision."""
+    """Objects of the first map that are not in the second, or elsewhere. The second may know more: what was on the disk and not announced yet. That
+    may have moved things, so places are compared where both are of the same revision; or shown that two objects are one, which then has the visits of both."""
     same = announced["revision"] == restored["revision"]
     if restored["revision"] < announced["revision"]:
         return [f"revision {announced['revision']} was announced, {restored['revision']} is back"]
     there = {o["id"]: o for o in restored["objects"]}
+    visited = [(o["type"], visit) for o in restored["objects"] for visit in o["visits"]]
     lost = []
     for o in announced["objects"]:
         twin = there.get(o["id"])
+        if twin is None and not same and all((o["type"], visit) in visited for visit in o["visits"]):
+            continue
         if twin is None or twin["type"] != o["type"]:
             lost.append(f"{o['type']} {o['id']} is gone")
         elif same and max(abs(a - b) for a, b in zip(o["pose"]["position"], twin["pose"]["position"])) > PLACE_M:

@@ -102,6 +102,12 @@ void fields(V& v, TrackerConfig::Gesture& c) {
   v.number("hold_s", c.hold_s, Range{"s", 0, 3600});
   v.number("both_hip_m", c.both_hip_m, Range{"m", 0, 100});
   v.number("both_hold_s", c.both_hold_s, Range{"s", 0, 3600});
+  v.number("walk_speed_mps", c.walk_speed_mps, Range{"m/s", 0, 100});
+  v.number("swing_m", c.swing_m, Range{"m", 0.001, 100});
+  v.number("swing_hold_s", c.swing_hold_s, Range{"s", 0, 3600});
+  v.number("hang_rad", c.hang_rad, Range{"rad", 0, 3.1416});
+  v.number("hang_elbow_rad", c.hang_elbow_rad, Range{"rad", 0, 3.1416});
+  v.number("hang_over_hip_m", c.hang_over_hip_m, Range{"m", -100, 100});
   v.number("velocity_smoothing_s", c.velocity_smoothing_s, Range{"s", 0.001, 3600});
   v.number("speed_smoothing_s", c.speed_smoothing_s, Range{"s", 0.001, 3600});
   v.number("palm_m", c.palm_m, Range{"m", 0, 100});

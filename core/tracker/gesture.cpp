@@ -18,12 +18,19 @@ constexpr Arm kRight{Segment::RightUpperArm, Segment::RightForearm, Segment::Rig
 
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+/// Between upper arm and forearm.
+double elbow_angle(const SuitFrame& frame, const Arm& arm) {
+  const Vector3d& elbow = frame[arm.forearm].p;
+  return angle_between(frame[arm.upper_arm].p - elbow, frame[arm.hand].p - elbow);
+}
+
 double distance_to_segment(const Vector3d& point, const Vector3d& a, const Vector3d& b) {
   const double along = (point - a).dot(b - a) / (b - a).squaredNorm();
   return (point - a - std::clamp(along, 0.0, 1.0) * (b - a)).norm();
 }
 
-// The right hand draws beside its hip now and then, so it must prove harder that it lies there.
+// The right hand draws beside its hip now and then, wrist at the crest and fingers forward. So it must prove harder
+// that it lies there: with its palm.
 TrackerConfig::Gesture second_hand(TrackerConfig::Gesture config) {
   config.hold_s = config.both_hold_s;
   config.elbow_off_rad = config.elbow_on_rad;
@@ -56,9 +63,6 @@ void HandOnHip::reset() {
 
 bool HandOnHip::is_near(const SuitFrame& frame) const {
   const Arm& arm = side_ == Side::Left ? kLeft : kRight;
-  const Vector3d& elbow = frame[arm.forearm].p;
-  const double elbow_rad = angle_between(frame[arm.upper_arm].p - elbow, frame[arm.hand].p - elbow);
-
   const Pose T_pelvis_odom = frame[Segment::Pelvis].inverse();
   const Pose T_pelvis_hand = T_pelvis_odom * frame[arm.hand];
   const Vector3d& wrist = T_pelvis_hand.p;
@@ -67,29 +71,72 @@ bool HandOnHip::is_near(const SuitFrame& frame) const {
   const Vector3d hip = T_pelvis_odom * frame[arm.upper_leg].p;
   const Vector3d crest = hip + Vector3d(0, arm.outward * config_.crest_out_m, config_.crest_up_m);
 
+  const double from_crest = side_ == Side::Left ? distance_to_segment(crest, wrist, finger) : (crest - palm).norm();
   const double below_hip = hip.z() - finger.z();
   const double inside_hip = arm.outward * hip.y() - std::max(arm.outward * wrist.y(), arm.outward * palm.y());
-  return below_with_hysteresis(state_.near, elbow_rad, config_.elbow_on_rad, config_.elbow_off_rad) &&
-         below_with_hysteresis(state_.near, distance_to_segment(crest, wrist, finger), config_.hip_on_m,
-                               config_.hip_off_m) &&
+  return below_with_hysteresis(state_.near, elbow_angle(frame, arm), config_.elbow_on_rad, config_.elbow_off_rad) &&
+         below_with_hysteresis(state_.near, from_crest, config_.hip_on_m, config_.hip_off_m) &&
          below_with_hysteresis(state_.near, below_hip, config_.below_hip_on_m, config_.below_hip_off_m) &&
          below_with_hysteresis(state_.near, inside_hip, -config_.outside_hip_on_m, -config_.outside_hip_off_m);
 }
 
+std::optional<double> SwingingArm::step(const SuitFrame& frame) {
+  constexpr double kSampleS = 0.04, kWindowS = 1.0;
+  if (frame.discontinuity) reset();
+  const Pose& T_odom_pelvis = frame[Segment::Pelvis];
+  const Vector3d arm = frame[kRight.hand].p - frame[kRight.upper_arm].p;
+  const bool hangs = angle_between(arm, -Vector3d::UnitZ()) < config_.hang_rad &&
+                     elbow_angle(frame, kRight) > config_.hang_elbow_rad &&
+                     frame[kRight.hand].p.z() < frame[kRight.upper_leg].p.z() + config_.hang_over_hip_m;
+  if (samples_.empty() || frame.time_s - samples_.back().time_s >= kSampleS) {
+    samples_.push_back({frame.time_s, T_odom_pelvis.p.head<2>(), (T_odom_pelvis.q.conjugate() * arm).x()});
+    while (frame.time_s - samples_.front().time_s > kWindowS) samples_.pop_front();
+  }
+  if (!hangs || !swings()) since_s_.reset();
+  // It has done so for half of the second that was looked at, or more.
+  else if (!since_s_)
+    since_s_ = frame.time_s - 0.5 * kWindowS;
+  const bool sure = since_s_ && frame.time_s - *since_s_ >= 0.5 * kWindowS + config_.swing_hold_s;
+  return sure ? since_s_ : std::nullopt;
+}
+
+bool SwingingArm::swings() const {
+  constexpr double kLeastS = 0.6, kJustNowS = 0.3;  // of samples to judge by; stands still as soon as that says so
+  const Sample& last = samples_.back();
+  const auto speed = [&](const Sample& since) {
+    return (last.p_odom_pelvis - since.p_odom_pelvis).norm() / (last.time_s - since.time_s);
+  };
+  if (last.time_s - samples_.front().time_s < kLeastS || speed(samples_.front()) < config_.walk_speed_mps) return false;
+  const auto just_now = std::find_if(samples_.begin(), samples_.end(),
+                                     [&](const Sample& s) { return last.time_s - s.time_s < kJustNowS; });
+  if (just_now->time_s < last.time_s && speed(*just_now) < 0.5 * config_.walk_speed_mps) return false;
+  const auto [back, front] = std::minmax_element(
+      samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) { return a.forward_m < b.forward_m; });
+  return front->forward_m - back->forward_m > config_.swing_m;
+}
+
+void SwingingArm::reset() {
+  samples_.clear();
+  since_s_.reset();
+}
+
 GestureFold::GestureFold(const TrackerConfig::Gesture& config)
-    : left_(Side::Left, config), right_(Side::Right, second_hand(config)) {}
+    : left_(Side::Left, config), right_(Side::Right, second_hand(config)), swing_(config) {}
 
 GestureState GestureFold::step(const SuitFrame& frame) {
   const HipState left = left_.step(frame);
   const HipState right = right_.step(frame);
-  GestureState state{left.near && !right.held, left.held && !right.held, std::nullopt};
-  if (right.held) state.both_since_s = right.rests_since_s;
+  const std::optional<double> swings_since_s = swing_.step(frame);
+  const bool free = !right.held && !swings_since_s;
+  GestureState state{left.near && free, left.held && free, swings_since_s};
+  if (right.held) state.none_since_s = std::min(right.rests_since_s, swings_since_s.value_or(HUGE_VAL));
   return state;
 }
 
 void GestureFold::reset() {
   left_.reset();
   right_.reset();
+  swing_.reset();
 }
 
 void GestureFold::resume(const std::array<HipState, 2>& hips) {

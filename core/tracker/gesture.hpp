@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <deque>
 #include <optional>
 
 #include "core/body.hpp"
@@ -15,11 +17,11 @@ enum class Side { Left, Right };
 
 /// What the gesture says of one frame.
 struct GestureState {
-  bool near = false;  ///< the left hand is near its hip, the right one not held on its own
+  bool near = false;  ///< the left hand is near its hip, the right one free to draw
   bool held = false;  ///< … and has come to rest there
-  /// Both hands rest on the hips, the right one since this stream time: from then on it was no gesture, as is only
-  /// known now.
-  std::optional<double> both_since_s;
+  /// The right hand rests on its own hip, or swings as the wearer walks, since this stream time: from then on it was no
+  /// gesture, as is only known now.
+  std::optional<double> none_since_s;
 };
 
 /// Whether one hand lies on the hip of its side: elbow bent, hand at the iliac crest, hand at rest against the pelvis.
@@ -41,6 +43,30 @@ class HandOnHip {
   HipState state_;
 };
 
+/// Whether the wearer walks along with the right arm swinging beside the body. Many put the left hand on the hip while
+/// they still walk up, or leave it there on the way to the next thing: what the right one does then draws nothing. A
+/// hand that follows a wall or an edge stays where it is beside the body, however fast one walks.
+class SwingingArm {
+ public:
+  explicit SwingingArm(const TrackerConfig::Gesture& config) : config_(config) {}
+  /// While it swings, and has for long enough to be sure: since which stream time.
+  std::optional<double> step(const SuitFrame& frame);
+  void reset();
+
+ private:
+  struct Sample {
+    double time_s;
+    Eigen::Vector2d p_odom_pelvis;
+    double forward_m;  ///< of the wrist before the shoulder, as the pelvis faces
+  };
+  /// Over the last second, at the newest of the samples.
+  [[nodiscard]] bool swings() const;
+
+  TrackerConfig::Gesture config_;
+  std::deque<Sample> samples_;
+  std::optional<double> since_s_;
+};
+
 /// The modelling gesture: the left hand on its hip and the right hand free. Both hands on the hips is a way to stand.
 class GestureFold {
  public:
@@ -54,6 +80,7 @@ class GestureFold {
  private:
   HandOnHip left_;
   HandOnHip right_;
+  SwingingArm swing_;
 };
 
 }  // namespace kinemap

@@ -16,7 +16,7 @@ constexpr double kRest = 0.08;  // m that a hand at rest sways, and what the sui
 
 std::optional<Event> TraceFold::step(double time_s, const GestureState& gesture) {
   std::optional<Event> ended;
-  if (open_ && gesture.both_since_s) seen_s_ = std::min(seen_s_, *gesture.both_since_s);
+  if (open_ && gesture.none_since_s) seen_s_ = std::min(seen_s_, *gesture.none_since_s);
   const double unseen_s = time_s - seen_s_;
   if (open_ && unseen_s > (gesture.near ? config_.gap_s : config_.dropout_s)) ended = close();
   if (!gesture.near) return ended;

@@ -151,6 +151,65 @@ TEST(Gesture, TheRightHandMayDrawBesideItsHip) {
   }
 }
 
+// The wrist is at the crest then, as that of a hand which lies there.
+TEST(Gesture, TheRightHandMayDrawBeforeItsHip) {
+  for (const double stature_m : {1.55, 1.75, 1.95}) {
+    const Puppet puppet(stature_m, {});
+    const auto acts = between_standing(9.0, [](double t) {
+      const ArmSpec right{ArmSpec::Origin::Hip, {0.08, 0.06, 0.03}, {1.0, 0.1, -0.2}, {-1.0, 0.3, 0.0}};
+      Figure f = with_arms(standing(), on_hip(), right);
+      f.hips.x() = 0.15 * t;
+      return f;
+    });
+    EXPECT_EQ(track(perform(puppet, acts)).traces.size(), 1u) << stature_m;
+  }
+}
+
+ArmSpec swinging(double t) {
+  ArmSpec arm = hanging();
+  arm.wrist.x() += 0.08 * std::sin(2.0 * std::numbers::pi * t / 1.1);
+  return arm;
+}
+
+Figure standing_at(double x) {
+  Figure f = standing();
+  f.hips.x() = x;
+  return f;
+}
+
+TEST(Gesture, TheRightArmThatSwingsWhileOneWalksIsNone) {
+  for (const Case& c : cases()) {
+    const Puppet puppet(c.stature_m, c.errors);
+    const auto walk_from = [](double x) {
+      return [x](double t) { return with_arms(walking(t, 1.0, {x, 0.0}), on_hip(), swinging(t)); };
+    };
+    const auto draw_at = [](double x) {
+      return [x](double t) { return with_arms(standing_at(x), on_hip(), drawing(t)); };
+    };
+    // The left hand goes to the hip as the wearer sets out, and stays there on the way to the next thing.
+    const std::vector<Act> acts{{2.0, [](double) { return standing(); }},
+                                {4.0, walk_from(0.0)},
+                                {6.0, draw_at(4.0)},
+                                {4.0, walk_from(4.0)},
+                                {6.0, draw_at(8.0)},
+                                {2.0, [](double) { return standing_at(8.0); }}};
+    const Outcome outcome = track(perform(puppet, acts, c.sampling));
+    ASSERT_EQ(outcome.traces.size(), 2u) << describe(c);
+    EXPECT_NEAR(outcome.traces[0].begin_s, 6.0, 1.0) << describe(c);
+    EXPECT_NEAR(outcome.traces[0].end_s, 12.0, 1.0) << describe(c);
+    EXPECT_NEAR(outcome.traces[1].begin_s, 16.0, 1.0) << describe(c);
+  }
+}
+
+// The hand is as low, and the wearer as fast, but it stays beside the body.
+TEST(Gesture, AHandThatFollowsAnEdgeWhileOneWalksDraws) {
+  for (const Case& c : cases()) {
+    const Puppet puppet(c.stature_m, c.errors);
+    const auto acts = between_standing(9.0, [](double t) { return with_arms(walking(t, 0.8), on_hip(), hanging()); });
+    EXPECT_EQ(track(perform(puppet, acts, c.sampling)).traces.size(), 1u) << describe(c);
+  }
+}
+
 TEST(Gesture, AHandThatStraysOnceItLayOnTheHipKeepsIt) {
   for (const Eigen::Vector3d& shift : {Eigen::Vector3d(-0.20, 0.03, 0.20), {0.05, -0.12, 0.0}}) {
     const Puppet puppet;

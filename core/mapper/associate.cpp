@@ -325,9 +325,12 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     const Eigen::MatrixXd j = jacobian(d, a, b);
     Eigen::MatrixXd s = j * marginals.joint(pair) * j.transpose();
     s.diagonal() += d.noise.cwiseAbs2();
-    s *= squared(config.doubt);
-    Candidate candidate{other, d.quarter_turns, e.dot(s.ldlt().solve(e)), static_cast<int>(e.size()),
-                        evidence(d, e, s, config.look_alike_share)};
+    const Eigen::MatrixXd doubted = squared(config.doubt) * s;
+    Candidate candidate{other, d.quarter_turns, e.dot(doubted.ldlt().solve(e)), static_cast<int>(e.size()),
+                        evidence(d, e, doubted, config.look_alike_share)};
+    // Two cannot stand in one place: when they seem to, that is no sign of a drift as wide as the doubt.
+    if (in_one_place(a, b))
+      candidate.evidence = std::max(candidate.evidence, evidence(d, e, s, config.look_alike_share));
     if (a.kind == LandmarkKind::Wall) {
       const auto along = along_wall_distance(state, marginals, newcomer, other, config.doubt);
       if (!along) continue;

@@ -29,6 +29,8 @@ constexpr double kNarrow = 0.3;         // m: of open rectangles, so little may 
 constexpr double kSecondChoice = 0.8;   // part of the trace that the surface that holds less of it must still hold
 constexpr double kFar = 0.15;           // m: farther off what was drawn is a lift-off or the way there
 
+constexpr const char* kNeither = "an upright surface, but no closed contour and too short for a wall";
+
 struct Attempt {
   std::optional<Observation> observation;
   std::string reason;
@@ -155,13 +157,18 @@ double screen_misfit(std::span<const TracePoint> points, const Surface& surface,
   return (across + members * contour_misfit(flat, fit) + (all - members) * kFar * kFar) / all;
 }
 
+/// Who points out or waves something in the air draws small rounds, too.
+bool too_small_for_a_screen(const RectangleFit& fit) {
+  constexpr double kLeastLongSide = 0.3;  // m
+  return std::max(fit.size[0], fit.size[1]) < kLeastLongSide;
+}
+
 Attempt screen(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
   const double heading = std::atan2(surface.normal.y(), surface.normal.x());
   const Eigen::Vector3d u(-std::sin(heading), std::cos(heading), 0.0);
   const Eigen::Vector3d foot = surface.offset * surface.normal;
   const auto flat = in_plane(points, surface, foot, u, Eigen::Vector3d::UnitZ());
   const auto fit = fit_rectangle(flat, config, 0.0);
-  constexpr const char* kNeither = "an upright surface, but no closed contour and too short for a wall";
   if (!fit) return {std::nullopt, kNeither};
   const auto labelled = std::count_if(fit->labels.begin(), fit->labels.end(),
                                       [](const SideLabel& l) { return l.edge != graph::Edge::None; });
@@ -176,6 +183,8 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
     return {std::nullopt, kNeither};
   }
   if (!clean || share < 0.5) return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
+  if (too_small_for_a_screen(*fit))
+    return {std::nullopt, "a closed contour on an upright surface, too small for a screen"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Screen;
   const Eigen::Vector3d centre = foot + fit->centre.x() * u + fit->centre.y() * Eigen::Vector3d::UnitZ();
@@ -207,8 +216,7 @@ Attempt wall(std::span<const TracePoint> points, const Surface& surface, double 
   }
   // First and last contact far apart (paper, section IV): a hand that waves to and fro in the air does not get
   // anywhere.
-  if (apart < config.wall_min_extent_m || apart < 0.4 * (hi - lo))
-    return {std::nullopt, "an upright surface, but no closed contour and too short for a wall"};
+  if (apart < config.wall_min_extent_m || apart < 0.4 * (hi - lo)) return {std::nullopt, kNeither};
   if (may_be_table_edge(points, surface, floor_z, hi - lo))
     return {std::nullopt, "a straight level line at the height of a table: one edge of it, or a wall"};
   Observation seen;
@@ -230,7 +238,9 @@ Attempt classify(std::span<const TracePoint> points, const Surface& surface, dou
     return {std::nullopt, "the surface leans: neither level nor upright"};
   if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
   auto contour = screen(points, surface, config);
-  return contour.observation || contour.part_of_screen ? contour : wall(points, surface, floor_z, config);
+  if (contour.observation || contour.part_of_screen) return contour;
+  auto line = wall(points, surface, floor_z, config);
+  return line.observation || contour.reason == kNeither ? line : contour;
 }
 
 void shift(Observation& observation, std::size_t by) {

@@ -63,11 +63,11 @@ struct TrackerConfig {
     double both_hip_m = 0.15;  ///< middle of the palm to the iliac crest
     double both_hold_s = 2.0;
     // So does the right arm when it swings while one walks: it hangs, and goes to and fro beside the body.
-    double walk_speed_mps = 0.5;         ///< of the pelvis, over a second
+    double walk_speed_mps = 0.55;        ///< of the pelvis, over a second
     double swing_m = 0.08;               ///< of the wrist forward and back, from the one to the other; 100: none swings
     double swing_hold_s = 0.6;           ///< for so long
-    double hang_rad = 0.4;               ///< from shoulder to wrist, against the plumb line
-    double hang_elbow_rad = 2.3;         ///< inner angle between upper arm and forearm
+    double hang_rad = 0.35;              ///< from shoulder to wrist, against the plumb line
+    double hang_elbow_rad = 2.4;         ///< inner angle between upper arm and forearm
     double hang_over_hip_m = 0.03;       ///< the wrist is not higher than this over the hip joint
     double velocity_smoothing_s = 0.15;  ///< time constant of that velocity, against the jitter of the hand
     double speed_smoothing_s = 0.3;      ///< time constant of its magnitude

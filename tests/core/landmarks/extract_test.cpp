@@ -206,6 +206,13 @@ TEST(Extract, TwoSidesOfARectangleAboveTheHeightOfTablesAreNoTable) {
   EXPECT_EQ(counter.observations[0].landmark.kind, LandmarkKind::Table);
 }
 
+TEST(Extract, ASmallRoundInTheAirIsNoScreen) {
+  const auto found =
+      extract_landmarks(trace(round_trip(upright_rectangle({0.5, 1.0, 1.4}, 0.4, 0.22, 0.18))), 0.0, kConfig);
+  EXPECT_TRUE(found.observations.empty());
+  EXPECT_NE(found.reason.find("too small"), std::string::npos) << found.reason;
+}
+
 TEST(Extract, SaysWhyNothingWasFound) {
   // A level surface at the height of the knees.
   const auto low = level_rectangle({0.0, 0.0, 0.1}, 0.0, 1.0, 0.6);

@@ -91,6 +91,22 @@ TEST(Candidates, AreThoseWithinWhatASuitTwiceAsBadWouldDrift) {
   }
 }
 
+// Little is known of the way between the visits. Two seats 3 cm apart cannot be two; at 60 cm they may well be.
+TEST(Candidates, TwoInOnePlaceAreOne) {
+  for (const double apart : {0.03, 0.6}) {
+    MapState state = seats_taken_for_one({apart});
+    state.graph.between[0].sqrt_information.diagonal().head<2>().setConstant(1.0 / 0.6);
+    const std::size_t newcomer = split(state, 1);
+    const MapperConfig config;
+    ASSERT_TRUE(LoopCloser{config}.settle(state, 30));
+    const auto marginals = graph::Marginals::compute(state.graph);
+    ASSERT_TRUE(marginals);
+    const auto found = candidates(state, newcomer, *marginals, config.association);
+    ASSERT_EQ(found.size(), 1U) << apart;
+    EXPECT_EQ(found[0].evidence > 0.0, apart < 0.4) << apart << " m: " << found[0].evidence;
+  }
+}
+
 /// Two seats 2 m apart, a way of which little is known (0.8 m), and two seats again, so far from where the first ones
 /// are as `off` says.
 MapState seats_before_and_after_a_long_way(const std::array<double, 2>& off) {

@@ -92,10 +92,10 @@ std::optional<double> SwingingArm::step(const SuitFrame& frame) {
     samples_.push_back({frame.time_s, T_odom_pelvis.p.head<2>(), (T_odom_pelvis.q.conjugate() * arm).x()});
     while (frame.time_s - samples_.front().time_s > kWindowS) samples_.pop_front();
   }
-  if (!hangs || !swings()) since_s_.reset();
-  // It has done so for half of the second that was looked at, or more.
+  if (!hangs || !swings())
+    since_s_.reset();
   else if (!since_s_)
-    since_s_ = frame.time_s - 0.5 * kWindowS;
+    since_s_ = frame.time_s - 0.5 * kWindowS;  // for half of what was looked at, or more
   const bool sure = since_s_ && frame.time_s - *since_s_ >= 0.5 * kWindowS + config_.swing_hold_s;
   return sure ? since_s_ : std::nullopt;
 }

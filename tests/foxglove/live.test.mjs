@@ -94,15 +94,13 @@ test("a wearer walks: every channel fits Foxglove's schemas, and the scene is th
   // Of this seed some object is first taken for a new one and joined with a known one later.
   await daemon.walk("--seed", "11", "--rooms", "1", "--rounds", "2", "--speed", "20");
   // The last revision comes once the suit has been silent for a while; then scene and map are one.
-  let map;
-  for (let i = 0; ; ++i) {
-    map = await daemon.get("/api/v1/map");
-    await new Promise((resolve) => setTimeout(resolve, 200));
-    if (failure) throw failure;
-    const settled = (await daemon.get("/api/v1/map")).revision === map.revision && i > 15;
-    if (settled && viewer.ids().join() === idsOf(map).join()) break;
+  await daemon.settled();
+  const map = await daemon.get("/api/v1/map");
+  for (let i = 0; viewer.ids().join() !== idsOf(map).join(); ++i) {
     assert.ok(i < 150, `scene: ${viewer.ids()}; map: ${idsOf(map)}`);
+    await new Promise((resolve) => setTimeout(resolve, 200));
   }
+  if (failure) throw failure;
   assert.ok(map.objects.length > 5, "the wearer traced some objects");
   for (const [topic, count] of Object.entries(counts)) assert.ok(count > 0, `nothing came on ${topic}`);
   assert.ok(viewer.deleted > 0, "something was joined with another and had to go");

@@ -16,18 +16,19 @@ namespace {
 using graph::Landmark;
 using graph::LandmarkKind;
 
-constexpr double kMinPart = 3.0;        // s: an object that shares its gesture with another one takes so long to draw
-constexpr double kMinBesideWall = 1.8;  // s: a wall after a wall
-constexpr double kLongerWall = 1.5;     // × wall_min_extent_m, of a wall beside something else
-constexpr double kCutStep = 0.75;       // s between the cuts that are tried in a gesture over two objects
-constexpr double kMostOfAPart = 0.75;   // of the contacts of such a part are on its object
-constexpr double kHighestEdge = 1.1;    // m over the floor, of a table that was not drawn all round
-constexpr int kDeepest = 3;             // leftovers of leftovers
-constexpr double kMostOfIt = 0.75;      // of the contacts lie on sides where sides were drawn
-constexpr double kLongestPart = 2.5;    // m: longer is a wall, whatever else the hand did
-constexpr double kNarrow = 0.3;         // m: of open rectangles, so little may be the hand's way to a side and from it
-constexpr double kSecondChoice = 0.8;   // part of the trace that the surface that holds less of it must still hold
-constexpr double kFar = 0.15;           // m: farther off what was drawn is a lift-off or the way there
+constexpr double kMinPart = 3.0;         // s: an object that shares its gesture with another one takes so long to draw
+constexpr double kMinBesideWall = 1.8;   // s: a wall after a wall
+constexpr double kLongerWall = 1.5;      // × wall_min_extent_m, of a wall beside something else
+constexpr double kCutStep = 0.75;        // s between the cuts that are tried in a gesture over two objects
+constexpr double kMostOfAPart = 0.75;    // of the contacts of such a part are on its object
+constexpr double kHighestEdge = 1.1;     // m over the floor, of a table that was not drawn all round
+constexpr int kDeepest = 3;              // leftovers of leftovers
+constexpr double kMostOfIt = 0.75;       // of the contacts lie on sides where sides were drawn
+constexpr double kLongestPart = 2.5;     // m: longer is a wall, whatever else the hand did
+constexpr double kNarrow = 0.3;          // m: of open rectangles, so little may be the hand's way to a side and from it
+constexpr double kSecondChoice = 0.8;    // part of the trace that the surface that holds less of it must still hold
+constexpr double kSmallestScreen = 0.3;  // m, its longer side: who points out something in the air draws rounds, too
+constexpr double kFar = 0.15;            // m: farther off what was drawn is a lift-off or the way there
 
 constexpr const char* kNeither = "an upright surface, but no closed contour and too short for a wall";
 
@@ -157,12 +158,6 @@ double screen_misfit(std::span<const TracePoint> points, const Surface& surface,
   return (across + members * contour_misfit(flat, fit) + (all - members) * kFar * kFar) / all;
 }
 
-/// Who points out or waves something in the air draws small rounds, too.
-bool too_small_for_a_screen(const RectangleFit& fit) {
-  constexpr double kLeastLongSide = 0.3;  // m
-  return std::max(fit.size[0], fit.size[1]) < kLeastLongSide;
-}
-
 Attempt screen(std::span<const TracePoint> points, const Surface& surface, const LandmarkConfig& config) {
   const double heading = std::atan2(surface.normal.y(), surface.normal.x());
   const Eigen::Vector3d u(-std::sin(heading), std::cos(heading), 0.0);
@@ -183,7 +178,7 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
     return {std::nullopt, kNeither};
   }
   if (!clean || share < 0.5) return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
-  if (too_small_for_a_screen(*fit))
+  if (std::max(fit->size[0], fit->size[1]) < kSmallestScreen)
     return {std::nullopt, "a closed contour on an upright surface, too small for a screen"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Screen;

@@ -18,7 +18,7 @@ using graph::LandmarkKind;
 
 constexpr int kPullIterations = 3;
 constexpr int kReassignRounds = 2;
-constexpr double kAlike = 1.5;       // m by which two closures that bear each other out may move things differently
+constexpr double kAlike = 1.5;  // m by which two closures that bear each other out may move things differently
 
 /// Sets the loss of all factors on the newcomer's visits.
 void set_loss(MapState& state, const std::vector<std::size_t>& visits, graph::Loss contact, graph::Loss seat) {
@@ -179,7 +179,8 @@ bool LoopCloser::close_jointly(MapState& state, const graph::Marginals& marginal
   for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
     if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;
     for (const Candidate& c : candidates(state, k, marginals, config))
-      if (c.landmark < k && c.evidence > config.joint_evidence && !is_contradicted(k, c.landmark)) open.push_back({k, c});
+      if (c.landmark < k && c.evidence > config.joint_evidence && !is_contradicted(k, c.landmark))
+        open.push_back({k, c});
   }
   const double apart = open.size() < 2 ? 0.0 : free_space_cost(state, &marginals, config.free_space_most);
   std::vector<JointHypothesis> hypotheses;

@@ -5,6 +5,7 @@ import { after, before, test } from "node:test";
 
 import { WebSocket } from "ws";
 
+import { settled } from "../settled.mjs";
 import { checkOwnSchema, checkSchema, connect, Daemon, idsOf, jsonOf, next, Viewer } from "./support.mjs";
 
 const topics = {
@@ -94,7 +95,7 @@ test("a wearer walks: every channel fits Foxglove's schemas, and the scene is th
   // Of this seed some object is first taken for a new one and joined with a known one later.
   await daemon.walk("--seed", "11", "--rooms", "1", "--rounds", "2", "--speed", "20");
   // The last revision comes once the suit has been silent for a while; then scene and map are one.
-  await daemon.settled();
+  await settled(`http://127.0.0.1:${daemon.port}/`);
   const map = await daemon.get("/api/v1/map");
   for (let i = 0; viewer.ids().join() !== idsOf(map).join(); ++i) {
     assert.ok(i < 150, `scene: ${viewer.ids()}; map: ${idsOf(map)}`);

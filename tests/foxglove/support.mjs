@@ -70,17 +70,6 @@ export class Daemon {
     return answer.json();
   }
 
-  /** Once the suit is silent, nothing waits for the solver and it is at nothing: no more news of this walk come. */
-  async settled() {
-    for (let rests = 0; rests < 3; ) { // between two entries the solver is at none
-      const metrics = await (await fetch(`http://127.0.0.1:${this.port}/metrics`)).text();
-      const values = (name) => [...metrics.matchAll(new RegExp(`^${name}\\S* (\\S+)`, "gm"))].map((m) => Number(m[1]));
-      const atRest = values("kinemap_suit_silence_seconds")[0] > 4 && values("kinemap_solver_entry_age_seconds")[0] === 0;
-      rests = atRest && values("kinemap_ring_depth").every((n) => n === 0) ? rests + 1 : 0;
-      await new Promise((resolve) => setTimeout(resolve, 100));
-    }
-  }
-
   async stop() {
     this.process.kill("SIGTERM");
     await this.process.done;

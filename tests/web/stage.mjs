@@ -10,6 +10,7 @@ import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
+import { settled } from "../settled.mjs";
 
 const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 const build = process.env.KINEMAP_BUILD ?? join(root, "build/release");
@@ -84,13 +85,7 @@ export class Daemon {
 
   /** Map and suit's state once the suit is silent and no event waits for the solver. */
   async settled() {
-    for (let quiet = 0, revision = -1; quiet < 4; ) {
-      await new Promise((resolve) => setTimeout(resolve, 500));
-      const { suit, rings, map } = await this.get("api/v1/status");
-      const waiting = suit.receiving || rings.events.fill > 0 || rings.frames.fill > 0 || map.revision !== revision;
-      quiet = waiting ? 0 : quiet + 1;
-      revision = map.revision;
-    }
+    await settled(this.url);
     return { map: await this.get("api/v1/map"), suit: (await this.get("api/v1/status")).suit };
   }
 

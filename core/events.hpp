@@ -12,6 +12,15 @@ namespace kinemap {
 
 using KeyPoseId = std::uint32_t;  ///< 0, 1, 2, … in the order of time
 
+/// How far the suit slipped: a foot that stands neither moves nor turns, so what the stream moves it by, it moves the
+/// whole body by. Differences to what the stream says.
+struct Slip {
+  double turn_rad = 0.0;                            ///< the pelvis turned so much more about the vertical …
+  Eigen::Vector2d way_m = Eigen::Vector2d::Zero();  ///< … and went so much farther, odom frame
+  double stood_s = 0.0;                             ///< for so long a foot stood and was heard
+  double apart_rad = 0.0;                           ///< two standing feet differ by so much about the turn
+};
+
 /// A pose of the pelvis that becomes a node of the graph, with what the odometry noise depends on.
 struct KeyPose {
   KeyPoseId id = 0;
@@ -28,6 +37,9 @@ struct KeyPose {
   /// Metal bent the magnetic field at the pelvis at some time since the key pose before; absent when the suit did not
   /// say.
   std::optional<bool> field_disturbed;
+  /// Since the key pose before, as the feet saw it; absent when none stood, or the suit holds standing feet in place so
+  /// that they say nothing.
+  std::optional<Slip> slip;
 };
 
 /// The right hand at one instant of a trace, relative to the latest key pose at or before that instant.

@@ -71,6 +71,14 @@ void fields(V& v, TrackerConfig::Stance& c) {
 }
 
 template <class V>
+void fields(V& v, TrackerConfig::Slip& c) {
+  v.number("speed_mps", c.speed_mps, Range{"m/s", 0.001, 100});
+  v.number("turn_rad_per_s", c.turn_rad_per_s, Range{"rad/s", 0.0001, 100});
+  v.number("settle_s", c.settle_s, Range{"s", 0, 3600});
+  v.number("held_m", c.held_m, Range{"m", 0, 100});
+}
+
+template <class V>
 void fields(V& v, TrackerConfig::Magnetic& c) {
   v.number("norm_on", c.norm_on, Range{"1", 0, 10});
   v.number("norm_off", c.norm_off, Range{"1", 0, 10});
@@ -178,6 +186,7 @@ template <class V>
 void fields(V& v, TrackerConfig& c) {
   v.section("key_poses", c.key_poses);
   v.section("stance", c.stance);
+  v.section("slip", c.slip);
   v.section("magnetic", c.magnetic);
   v.section("gesture", c.gesture);
   v.section("traces", c.traces);
@@ -189,6 +198,8 @@ template <class V>
 void fields(V& v, MapperConfig::Odometry& c) {
   v.number("translation_m_per_sqrt_m", c.translation_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
   v.number("translation_m_per_sqrt_s", c.translation_m_per_sqrt_s, Range{"m/√s", 1e-05, 1});
+  v.number("feet_m_per_sqrt_m", c.feet_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
+  v.number("feet_rad_per_sqrt_s", c.feet_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
   v.number("vertical_m_per_sqrt_m", c.vertical_m_per_sqrt_m, Range{"m/√m", 0.0001, 1});
   v.number("heading_rad_per_sqrt_s", c.heading_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});
   v.number("magnetic_rad_per_sqrt_s", c.magnetic_rad_per_sqrt_s, Range{"rad/√s", 1e-05, 1});

@@ -49,6 +49,7 @@ void fields(V& v, KeyPose& e) {
   v("discontinuity", e.discontinuity);
   v("stance", e.p_pelvis_stance);
   v("field_disturbed", e.field_disturbed);
+  v("slip", e.slip);
 }
 template <class V>
 void fields(V& v, Trace& e) {
@@ -141,6 +142,7 @@ class Writer {
     for (Eigen::Index i = 0; i < 9; ++i) list.push_back(m(i / 3, i % 3));
     return list;
   }
+  static Json of(const Slip& s) { return {s.turn_rad, s.way_m.x(), s.way_m.y(), s.stood_s, s.apart_rad}; }
   static Json of(const HandContact& c) { return {c.time_s, c.key_pose, of(c.T_key_hand)}; }
   static Json of(const SeatSample& s) { return {s.time_s, s.key_pose, of(s.T_key_seat), s.height_m}; }
   static Json of(const HipState& hip) { return {hip.near, hip.held, hip.rests_since_s}; }
@@ -227,6 +229,12 @@ class Reader {
     if (!get(json, v)) return false;
     T = {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
     return std::abs(T.q.norm() - 1.0) < 1e-6;
+  }
+  static bool get(const Json& json, Slip& s) {
+    std::array<double, 5> v{};
+    if (!get(json, v)) return false;
+    s = {v[0], {v[1], v[2]}, v[3], v[4]};
+    return true;
   }
   static bool get(const Json& json, HandContact& c) {
     return json.is_array() && json.size() == 3 && get(json[0], c.time_s) && get(json[1], c.key_pose) &&

@@ -12,7 +12,7 @@
 /// and counts kCheckpointVersion up.
 namespace kinemap {
 
-constexpr std::uint32_t kCheckpointVersion = 3;
+constexpr std::uint32_t kCheckpointVersion = 4;
 
 inline void fields(Archive& a, Pose& x) { a(x.p, x.q); }
 
@@ -58,8 +58,10 @@ inline void fields(Archive& a, GraphSummary& x) {
     x.optimisations_failed, x.last_cost);
 }
 inline void fields(Archive& a, MapState& x) { a(x.graph, x.landmarks, x.observations, x.direction, x.summary); }
+inline void fields(Archive& a, Slip& x) { a(x.turn_rad, x.way_m, x.stood_s, x.apart_rad); }
 inline void fields(Archive& a, KeyPose& x) {
-  a(x.id, x.time_s, x.T_odom_pelvis, x.path_m, x.turn_rad, x.discontinuity, x.p_pelvis_stance, x.field_disturbed);
+  a(x.id, x.time_s, x.T_odom_pelvis, x.path_m, x.turn_rad, x.discontinuity, x.p_pelvis_stance, x.field_disturbed,
+    x.slip);
 }
 inline void fields(Archive& a, HandContact& x) { a(x.time_s, x.key_pose, x.T_key_hand); }
 inline void fields(Archive& a, Trace& x) { a(x.begin_s, x.end_s, x.stature_m, x.contacts); }

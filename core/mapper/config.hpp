@@ -12,7 +12,10 @@ struct MapperConfig {
   struct Odometry {
     double translation_m_per_sqrt_m = 0.022;  ///< random walk of the level position (1 cm per 20 cm, paper section V)
     double translation_m_per_sqrt_s = 0.003;  ///< the same while standing
-    double vertical_m_per_sqrt_m = 0.012;     ///< random walk of the height, false steps included
+    /// As standing feet see it (KeyPose::slip), beside the suit's own: two measurements.
+    double feet_m_per_sqrt_m = 0.02;
+    double feet_rad_per_sqrt_s = 0.012;
+    double vertical_m_per_sqrt_m = 0.012;  ///< random walk of the height, false steps included
     /// The heading's passing error is drawn by noise and comes back by itself; harder beside metal, where the compass
     /// draws it to a wrong north: while a table or screen is traced (or the suit says that the field is wrong) and for
     /// some time after it.

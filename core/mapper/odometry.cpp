@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kStep = 0.08;       // m: a stance foot that is farther from the one before has climbed a step
 constexpr int kSteadyStances = 3;    // so many level stances in a row are a level
+constexpr double kShortest = 0.01;   // s
+constexpr double kLeastStood = 0.5;  // of a step; of less the feet cannot tell how far the body turned
 constexpr double kSameLevel = 0.15;  // m: closer to a known level than this is that level
 
 // What a wearer may have done unseen, at a break in odometry; standard deviations.
@@ -47,24 +49,52 @@ bool same_world(const KeyPose& from, const KeyPose& to) {
   return !began_anew && within_reach(a, b, to.time_s - from.time_s);
 }
 
+/// Part of a step during which feet stood and were heard.
+double stood_share(const KeyPose& from, const KeyPose& to) {
+  return to.slip ? std::clamp(to.slip->stood_s / std::max(kShortest, to.time_s - from.time_s), 0.0, 1.0) : 0.0;
+}
+
+/// What the feet count beside the suit, on the way that they stood on.
+double weight_of_feet(const MapperConfig::Odometry& config) {
+  const double suit = squared(config.translation_m_per_sqrt_m), feet = squared(config.feet_m_per_sqrt_m);
+  return suit > 0.0 ? suit / (suit + feet) : 0.0;
+}
+
+/// Standard deviation of the turn as the feet saw it (rad); nullopt when they did not see enough of it.
+std::optional<double> turn_sigma(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
+  const double share = stood_share(from, to);
+  if (to.discontinuity || share < kLeastStood) return std::nullopt;
+  const double seconds = std::max(kShortest, to.time_s - from.time_s);
+  const double unseen = 2.0 * squared(config.heading_rad_per_sqrt_s) * (1.0 - share) * seconds;
+  return std::sqrt(squared(config.feet_rad_per_sqrt_s) * seconds + squared(to.slip->apart_rad) + unseen);
+}
+
 }  // namespace
 
-Pose odometry_step(const KeyPose& from, const KeyPose& to) {
+Pose odometry_step(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
   const Pose& before = from.T_odom_pelvis;
-  const Pose& after = to.T_odom_pelvis;
-  const bool moved_world = to.discontinuity && !same_world(from, to);
-  return before.inverse() * (moved_world ? stayed(before, after) : after);
+  Pose after = to.T_odom_pelvis;
+  if (to.discontinuity && !same_world(from, to)) return before.inverse() * stayed(before, after);
+  if (to.slip) {
+    after.p.head<2>() += weight_of_feet(config) * to.slip->way_m;
+    if (turn_sigma(from, to, config))
+      after.q = Eigen::AngleAxisd(to.slip->turn_rad, Eigen::Vector3d::UnitZ()) * after.q;
+  }
+  return before.inverse() * after;
 }
 
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
   if (to.discontinuity) return break_sqrt_information(to.time_s - from.time_s, config);
-  const double dt = std::max(0.01, to.time_s - from.time_s);
-  const double level = std::sqrt(squared(config.translation_m_per_sqrt_m) * to.path_m +
+  const double dt = std::max(kShortest, to.time_s - from.time_s);
+  const double feet = stood_share(from, to) * weight_of_feet(config);
+  const double level = std::sqrt((1.0 - feet) * squared(config.translation_m_per_sqrt_m) * to.path_m +
                                  squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
   const double up = std::sqrt(squared(config.vertical_m_per_sqrt_m) * to.path_m +
                               squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));
   graph::Matrix6 information = graph::Matrix6::Zero();
-  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad, 0.0;
+  const auto turn = turn_sigma(from, to, config);
+  information.diagonal() << 1.0 / level, 1.0 / level, 1.0 / up, 1.0 / config.tilt_rad, 1.0 / config.tilt_rad,
+      turn ? 1.0 / *turn : 0.0;
   return information;
 }
 
@@ -94,7 +124,7 @@ void Odometry::add_between(const KeyPose& key_pose, graph::Graph& graph) {
   graph::BetweenFactor between;
   between.i = graph.poses.size() - 1;
   between.j = graph.poses.size();
-  between.T_i_j = odometry_step(from, key_pose);
+  between.T_i_j = odometry_step(from, key_pose, config_);
   between.sqrt_information = odometry_sqrt_information(from, key_pose, config_);
   graph.between.push_back(between);
   graph.poses.push_back(graph.poses.back() * between.T_i_j);
@@ -157,7 +187,8 @@ StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& betw
   const graph::Matrix6& information = between.sqrt_information;  // diagonal
   const auto compass = std::lower_bound(graph.compasses.begin(), graph.compasses.end(), between.j,
                                         [](const graph::CompassFactor& f, std::size_t pose) { return f.j < pose; });
-  const double heading = compass->i != compass->j ? compass->sigma_rad : 1.0 / information(5, 5);
+  const double compass_information = compass->i != compass->j ? 1.0 / compass->sigma_rad : 0.0;
+  const double heading = 1.0 / std::hypot(compass_information, information(5, 5));
   return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), heading};
 }
 

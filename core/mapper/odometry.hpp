@@ -56,11 +56,12 @@ class Odometry {
   bool on_level_ = false;
 };
 
-/// The way between two key poses, in the first one's frame, as the suit says; after a break, as a body can have moved.
-Pose odometry_step(const KeyPose& from, const KeyPose& to);
+/// The way between two key poses, in the first one's frame: as the suit says, less what it slipped as far as standing
+/// feet tell; after a break, as a body can have moved.
+Pose odometry_step(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
 
 /// Square root information (upper) of the odometry between two key poses; tangent [δp; δθ] in the first one's frame. Of
-/// the heading it has something to say at a break only; else that is the compass' matter.
+/// the heading it has something to say at a break only and where feet stood; else that is the compass' matter.
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
 
 /// The noise of a step of the odometry and the compass, as the graph has it.

@@ -36,7 +36,7 @@ SinceKeyPose KeyPoseFold::since_latest() const {
 
 std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,
                                          const std::optional<Eigen::Vector3d>& p_pelvis_stance,
-                                         std::optional<bool> field_disturbed) {
+                                         std::optional<bool> field_disturbed, const std::optional<Slip>& slip) {
   const Pose& T_odom_pelvis = frame[Segment::Pelvis];
   const bool broken = started_ && frame.discontinuity;
   if (!started_ || broken) restart(T_odom_pelvis);
@@ -45,6 +45,7 @@ std::optional<KeyPose> KeyPoseFold::step(const SuitFrame& frame, Demand demand,
   next_.T_odom_pelvis = T_odom_pelvis;
   next_.discontinuity = broken;
   next_.p_pelvis_stance = p_pelvis_stance;
+  next_.slip = slip;
   if (field_disturbed) next_.field_disturbed = *field_disturbed || next_.field_disturbed.value_or(false);
   if (started_ && !broken && !due(frame, demand)) return std::nullopt;
   started_ = true;

@@ -24,11 +24,11 @@ class KeyPoseFold {
   /// Before the first frame: goes on from the last key pose of another fold (Tracker::resume).
   void resume(const Interrupted& before, double unseen_path_m);
 
-  /// `p_pelvis_stance` as in KeyPose, `field_disturbed` at this frame. The first frame and a discontinuity always give
-  /// a key pose.
+  /// `p_pelvis_stance` as in KeyPose, `field_disturbed` at this frame, `slip` since the latest key pose. The first
+  /// frame and a discontinuity always give a key pose.
   std::optional<KeyPose> step(const SuitFrame& frame, Demand demand,
                               const std::optional<Eigen::Vector3d>& p_pelvis_stance,
-                              std::optional<bool> field_disturbed);
+                              std::optional<bool> field_disturbed, const std::optional<Slip>& slip);
   /// The newest frame as a key pose, unless it is one already.
   std::optional<KeyPose> finish();
 

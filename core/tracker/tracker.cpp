@@ -10,6 +10,7 @@
 #include "core/tracker/key_poses.hpp"
 #include "core/tracker/magnetic.hpp"
 #include "core/tracker/sitting.hpp"
+#include "core/tracker/slip.hpp"
 #include "core/tracker/stance.hpp"
 #include "core/tracker/traces.hpp"
 
@@ -21,6 +22,7 @@ class Tracker::Impl {
       : ball_height_m_(config.stance.ball_height_m),
         key_poses_(config.key_poses),
         stance_(config.stance),
+        slip_(config.slip),
         magnetic_(config.magnetic),
         gesture_(config.gesture),
         traces_(config.traces, config.pivot),
@@ -39,7 +41,10 @@ class Tracker::Impl {
 
     const bool busy = traces_.open() || sitting_.open();
     const bool now = traces_.starting() || sitting_.starting();
-    put(key_poses_.step(frame, {busy, now}, p_pelvis_stance, magnetic_.step(frame)), events);
+    const auto key_pose =
+        key_poses_.step(frame, {busy, now}, p_pelvis_stance, magnetic_.step(frame), slip_.step(frame, soles));
+    if (key_pose) slip_.begin();
+    put(key_pose, events);
     if (traces_.open()) traces_.record(frame, key_poses_.latest());
     sitting_.record(frame, key_poses_.latest());
     count();
@@ -77,6 +82,7 @@ class Tracker::Impl {
     put(key_poses_.finish(), events);  // the last that is known before the break
     if (goes_on) traces_.move(T_odom_before, unseen_s);
     stance_.reset();
+    slip_.reset();
     magnetic_.reset();
   }
 
@@ -105,6 +111,7 @@ class Tracker::Impl {
   double ball_height_m_;
   KeyPoseFold key_poses_;
   StanceFold stance_;
+  SlipFold slip_;
   MagneticFold magnetic_;
   GestureFold gesture_;
   TraceFold traces_;

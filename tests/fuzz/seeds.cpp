@@ -79,6 +79,7 @@ void write_journal(const fs::path& folder) {
   next.id = 1;
   next.time_s = 1.0;
   next.field_disturbed = true;
+  next.slip = Slip{-0.01, {0.002, 0.001}, 0.75, 0.003};
   const std::vector<journal::Entry> entries{
       journal::SessionStart{"20261122T103303Z", 1795343583000, "0.1.0", journal::kVersion},
       WearerInfo{"Ada", Eigen::Vector3d(0, -0.18, 0), std::nullopt, 1.7},

@@ -29,6 +29,7 @@ KeyPose key_pose(KeyPoseId id) {
   k.path_m = 0.21;
   k.turn_rad = 0.7;
   if (id % 2 == 0) k.p_pelvis_stance = Eigen::Vector3d(0.1, 0.2, -0.95);
+  if (id % 4 == 1) k.slip = Slip{-0.01, {0.002, -1.0 / 3.0}, 0.75, 0.003};
   if (id % 3 == 0) k.field_disturbed = id % 2 == 0;
   return k;
 }

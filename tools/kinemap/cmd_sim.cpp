@@ -175,6 +175,8 @@ void add_what(CLI::App& command, Options& options) {
   command.add_option("--packet-loss", options.packet_loss, "Part of the samples lost")->check(CLI::Range(0.0, 0.9));
   command.add_flag("--send-tracker", options.sim.send_tracker,
                    "Also send what the sensors measure (type 23), with the magnetic field");
+  command.add_flag("!--slipping-feet", options.sim.hold_feet,
+                   "Standing feet slip along with the body; without, the suit holds them in place as MVN does");
   command.add_flag("--no-distractors", options.no_distractors, "No gestures that mean nothing");
 }
 

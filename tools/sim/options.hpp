@@ -42,8 +42,10 @@ struct SimOptions {
   std::optional<double>
       closure_spacing_m;  ///< walked at least between touches of something known, 5–30; unset: 5–10 at most
 
-  bool distractors = true;            ///< gestures that mean nothing
-  double sloppiness = 0.5;            ///< 0 careful … 1 careless, see habits.hpp
+  bool hold_feet = true;    ///< the suit keeps standing feet where they are, as MVN does; else they slip along
+                            ///< with the body
+  bool distractors = true;  ///< gestures that mean nothing
+  double sloppiness = 0.5;  ///< 0 careful … 1 careless, see habits.hpp
   std::optional<double> packet_loss;  ///< 0–0.9; unset: from `drift`
   bool send_meta = true;              ///< type 12 about once a second
   bool send_scale = true;             ///< type 13 about once a second

@@ -80,7 +80,8 @@ Session::Session(const SimOptions& options)
       script_(write_script(options, building_, wearer_, script_random_)),
       gait_(make_gait(script_.score, wearer_.body)) {
   performer_ = std::make_unique<Performer>(script_.score, gait_, wearer_, body_random_);
-  suit_ = std::make_unique<Suit>(wearer_, script_.score, gait_, *performer_, building_, column_, suit_random_);
+  suit_ = std::make_unique<Suit>(wearer_, script_.score, gait_, *performer_, building_, column_, options_.hold_feet,
+                                 suit_random_);
   // MVN's world: near where the wearer was calibrated, x about forward.
   const Pose23 first = performer_->pose(0);
   map_turn_ = body_random_.normal(0.05) - heading_of(Vec2((first[kPelvis].q * Vec3::UnitX()).head<2>()));

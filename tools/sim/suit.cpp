@@ -18,7 +18,7 @@ std::vector<Vec2> level_way(const Performer& performer) {
 }  // namespace
 
 Suit::Suit(const Wearer& wearer, const Score& score, const Gait& gait, const Performer& performer,
-           const Building& building, const DriftColumn& column, Random& random)
+           const Building& building, const DriftColumn& column, bool hold_feet, Random& random)
     : wearer_(wearer),
       score_(score),
       gait_(gait),
@@ -29,8 +29,19 @@ Suit::Suit(const Wearer& wearer, const Score& score, const Gait& gait, const Per
       true_pelvis_(level_way(performer)),
       tilt_{Wander(radians(column.tilt_limit_deg) / 2.5, kTiltTau_s, random),
             Wander(radians(column.tilt_limit_deg) / 2.5, kTiltTau_s, random)},
-      arms_{make_arm(random), make_arm(random)} {
+      arms_{make_arm(random), make_arm(random)},
+      hold_feet_(hold_feet) {
   slip_ = make_slip(true_pelvis_, score, gait, column, patches_, random);
+  if (!hold_feet) legs_ = {make_leg(random), make_leg(random)};
+}
+
+Suit::Leg Suit::make_leg(Random& random) const {
+  // Legs carry their weight and err by a quarter of what arms do, along a chain of about a metre.
+  const double sigma = 0.25 * radians(column_.arm_deg);
+  Leg leg;
+  for (int i = 0; i < 2; ++i) leg.place.emplace_back(sigma, kArmTau_s, random);
+  leg.turn.emplace_back(sigma, kArmTau_s, random);
+  return leg;
 }
 
 Suit::Arm Suit::make_arm(Random& random) const {
@@ -106,7 +117,7 @@ Vec3 Suit::reported_ball(Side side, std::size_t frame, const Vec3& ball) const {
   return lift(there, ball.z() - wearer_.body.ball_height + body_.ball_height + slip_.height[frame]);
 }
 
-void Suit::report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out) const {
+void Suit::report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out) {
   const std::size_t f = side == Side::Right ? 0 : 1, foot = side == Side::Right ? kRightFoot : kLeftFoot;
   const auto& plants = gait_.plants[f];
   const FootState& state = gait_.feet[f][i];
@@ -124,9 +135,15 @@ void Suit::report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out
     next = state.plant + 1;
     u = smooth_step(static_cast<double>(i - from.lift) / static_cast<double>(plants[next].land - from.lift));
   }
-  const std::size_t a = frame_of(state.plant), b = frame_of(next);
-  const Vec3 ball = reported_ball(side, a, state.ball) * (1.0 - u) + reported_ball(side, b, state.ball) * u;
-  const double slip = slip_.heading[a] * (1.0 - u) + slip_.heading[b] * u;
+  const std::size_t a = hold_feet_ ? frame_of(state.plant) : i, b = hold_feet_ ? frame_of(next) : i;
+  Vec3 ball = reported_ball(side, a, state.ball) * (1.0 - u) + reported_ball(side, b, state.ball) * u;
+  double slip = slip_.heading[a] * (1.0 - u) + slip_.heading[b] * u;
+  if (!hold_feet_) {
+    Leg& leg = legs_[f];
+    const double dt = 1.0 / score_.rate_hz, x = leg.place[0].step(dt, random_), y = leg.place[1].step(dt, random_);
+    ball += Vec3(x, y, 0);
+    slip += leg.turn[0].step(dt, random_);
+  }
   out[foot].q = (about_z(slip) * truth[foot].q).normalized();
   out[foot + 1].q = (about_z(slip) * truth[foot + 1].q).normalized();
   const Quat knee_turn = tilt_now_ * about_z(slip_.heading[i]);

@@ -9,12 +9,12 @@
 namespace kinemap::sim {
 
 /// What the suit says of the wearer. Each segment's orientation is a little wrong; the positions follow from the
-/// orientations along a body of wrong dimensions, so that its bones keep their lengths; stance feet stay where they
-/// were put. Call in frame order.
+/// orientations along a body of wrong dimensions, so that its bones keep their lengths. Stance feet stay where they
+/// were put (`hold_feet`), or slip along with the body, the legs being a little wrong as well. Call in frame order.
 class Suit {
  public:
   Suit(const Wearer& wearer, const Score& score, const Gait& gait, const Performer& performer, const Building& building,
-       const DriftColumn& column, Random& random);
+       const DriftColumn& column, bool hold_feet, Random& random);
 
   /// The reported pose of frame `i` (0, 1, 2, …), given the true one.
   Pose23 report(std::size_t i, const Pose23& truth);
@@ -30,10 +30,16 @@ class Suit {
     std::vector<Wander> slow;    ///< wrist, 3 axes, m
     MagneticPull pull;
   };
+  /// Unrest of a foot that is not held.
+  struct Leg {
+    std::vector<Wander> place;  ///< x and y, m
+    std::vector<Wander> turn;   ///< one, rad
+  };
+  Leg make_leg(Random& random) const;
   Arm make_arm(Random& random) const;
   void report_trunk(std::size_t i, const Pose23& truth, Pose23& out);
   void report_arm(Side side, std::size_t i, const Pose23& truth, Pose23& out);
-  void report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out) const;
+  void report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out);
   [[nodiscard]] Vec3 reported_ball(Side side, std::size_t frame, const Vec3& ball) const;
 
   const Wearer& wearer_;
@@ -48,6 +54,8 @@ class Suit {
   std::array<Wander, 2> tilt_;
   Quat tilt_now_ = Quat::Identity();
   std::array<Arm, 2> arms_;
+  bool hold_feet_;
+  std::array<Leg, 2> legs_;
 };
 
 }  // namespace kinemap::sim

@@ -115,14 +115,38 @@ TEST(Odometry, ABreakInTheRecordOfOneWorldIsWhereTheSuitSays) {
   KeyPose from = at(0, 2.0, 0.95), to = at(1, 8.0, 0.95);
   to.time_s = 10.0;
   to.discontinuity = true;  // key poses were lost from a journal
-  EXPECT_NEAR(odometry_step(from, to).p.x(), 6.0, 1e-9);
+  EXPECT_NEAR(odometry_step(from, to, {}).p.x(), 6.0, 1e-9);
 }
 
 TEST(Odometry, NearTheOriginAWorldMayHaveBegunAnew) {
   KeyPose from = at(0, 1.2, 0.95), to = at(1, 0.1, 0.95);
   to.time_s = 1.5;
   to.discontinuity = true;
-  EXPECT_NEAR(odometry_step(from, to).p.norm(), 0.0, 1e-9) << "within reach, but that says nothing here";
+  EXPECT_NEAR(odometry_step(from, to, {}).p.norm(), 0.0, 1e-9) << "within reach, but that says nothing here";
+}
+
+TEST(Odometry, StandingFeetCorrectTheWay) {
+  const MapperConfig::Odometry config;
+  const KeyPose from = at(0, 0.0, 0.95);
+  KeyPose to = at(1, 0.2, 0.95);
+  const auto deaf = odometry_sqrt_information(from, to, config);
+  EXPECT_EQ(deaf(5, 5), 0.0) << "the heading is the compass' matter";
+  to.slip = Slip{0.03, {0.01, -0.02}, to.time_s - from.time_s, 0.0};
+  const Pose step = odometry_step(from, to, config);
+  EXPECT_NEAR(heading_of(step.q), 0.03, 1e-9);
+  const double w = 0.022 * 0.022 / (0.022 * 0.022 + 0.02 * 0.02);  // two measurements, by their weights
+  EXPECT_NEAR(step.p.x(), 0.2 + w * 0.01, 1e-9);
+  EXPECT_NEAR(step.p.y(), -w * 0.02, 1e-9);
+  const auto heard = odometry_sqrt_information(from, to, config);
+  EXPECT_GT(heard(0, 0), deaf(0, 0));
+  EXPECT_NEAR(1.0 / heard(5, 5), 0.012 * std::sqrt(to.time_s - from.time_s), 1e-9);
+
+  KeyPose at_odds = to, seldom = to;
+  at_odds.slip->apart_rad = 0.1;
+  EXPECT_NEAR(1.0 / odometry_sqrt_information(from, at_odds, config)(5, 5), 0.1, 0.01) << "feet that disagree";
+  seldom.slip->stood_s *= 0.3;
+  EXPECT_EQ(odometry_sqrt_information(from, seldom, config)(5, 5), 0.0);
+  EXPECT_NEAR(heading_of(odometry_step(from, seldom, config).q), 0.0, 1e-9);
 }
 
 /// Noise of the heading on the way to key pose `k`.

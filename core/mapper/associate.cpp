@@ -324,8 +324,9 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
                                               graph::Variable{graph::Variable::Kind::Landmark, other}};
     const Eigen::MatrixXd j = jacobian(d, a, b);
     Eigen::MatrixXd s = j * marginals.joint(pair) * j.transpose();
+    Eigen::MatrixXd doubted = squared(config.doubt) * s;
     s.diagonal() += d.noise.cwiseAbs2();
-    const Eigen::MatrixXd doubted = squared(config.doubt) * s;
+    doubted.diagonal() += std::max(1.0, squared(config.doubt)) * d.noise.cwiseAbs2();
     Candidate candidate{other, d.quarter_turns, e.dot(doubted.ldlt().solve(e)), static_cast<int>(e.size()),
                         evidence(d, e, doubted, config.look_alike_share)};
     // Two cannot stand in one place: when they seem to, that is no sign of a drift as wide as the doubt.

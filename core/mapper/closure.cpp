@@ -9,6 +9,7 @@
 
 #include "core/mapper/directions.hpp"
 #include "core/mapper/free_space.hpp"
+#include "core/mapper/noise.hpp"
 #include "core/mapper/reassign.hpp"
 
 namespace kinemap {
@@ -159,8 +160,15 @@ bool LoopCloser::align(MapState& state) const {
          optimise(state, config_.solver.closure_iterations);
 }
 
+void LoopCloser::learn(const MapState& state) {
+  if (state.summary.loop_closures != closures_heard_) heading_noise_ = heading_noise(state.graph);
+  closures_heard_ = state.summary.loop_closures;
+  config_.association.doubt = expected_doubt_ * std::min(1.0, heading_noise_);
+}
+
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {
   settle(state, config_.solver.closure_iterations);  // candidates are judged at an optimum
+  learn(state);
   if (state.graph.landmarks[newcomer].kind == LandmarkKind::Wall) align(state);
   const auto marginals = graph::Marginals::compute(state.graph);
   if (marginals && close(state, newcomer, *marginals, candidates(state, newcomer, *marginals, config_.association)))
@@ -245,6 +253,7 @@ bool LoopCloser::revise(MapState& state, const std::function<bool()>& enough) {
 
 bool LoopCloser::reconsider(MapState& state) {
   bool any = false;
+  learn(state);
   auto marginals = graph::Marginals::compute(state.graph);
   for (std::size_t k = state.graph.landmarks.size(); marginals && k-- > 0;) {
     if (!state.graph.landmarks[k].active || state.landmarks[k].id == 0) continue;

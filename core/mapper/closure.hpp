@@ -19,7 +19,7 @@ namespace kinemap {
 /// separate until later evidence decides.
 class LoopCloser {
  public:
-  explicit LoopCloser(const MapperConfig& config) : config_(config) {}
+  explicit LoopCloser(const MapperConfig& config) : config_(config), expected_doubt_(config.association.doubt) {}
 
   /// `newcomer` has just been added to `state`. True when a loop was closed. `state` is optimised.
   bool resolve(MapState& state, std::size_t newcomer);
@@ -44,7 +44,7 @@ class LoopCloser {
   /// Its members, for Mapper::checkpoint().
   template <class A>
   void fields(A& a) {
-    a(contradicted_, next_id_);
+    a(contradicted_, next_id_, heading_noise_, closures_heard_);
   }
 
  private:
@@ -71,10 +71,16 @@ class LoopCloser {
 
   [[nodiscard]] bool is_contradicted(std::size_t a, std::size_t b) const;
 
-  MapperConfig config_;
+  /// The doubt about the graph's covariance falls as loops tell that this suit errs less than expected.
+  void learn(const MapState& state);
+
+  MapperConfig config_;  ///< association.doubt as learn() has it
+  double expected_doubt_;
   std::vector<std::array<std::size_t, 2>>
       contradicted_;  ///< pairs that an optimum spoke against since the last closure
   std::uint32_t next_id_ = 1;
+  double heading_noise_ = 1.0;      ///< of this suit over the expected one …
+  std::size_t closures_heard_ = 0;  ///< … after so many loop closures
 };
 
 }  // namespace kinemap

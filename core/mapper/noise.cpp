@@ -35,4 +35,9 @@ graph::NoiseScales estimate_noise(graph::Graph graph) {
   return graph.noise;
 }
 
+double heading_noise(const graph::Graph& graph) {
+  const auto found = graph::variance_components(graph);
+  return found ? improved(1.0, found->heading, 1.0) : 1.0;
+}
+
 }  // namespace kinemap

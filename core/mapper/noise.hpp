@@ -11,4 +11,7 @@ namespace kinemap {
 /// refuse.
 graph::NoiseScales estimate_noise(graph::Graph graph);
 
+/// A first estimate of the heading's part of it, from the optimum at the expected noise: 1 until loops have closed.
+double heading_noise(const graph::Graph& graph);
+
 }  // namespace kinemap

@@ -113,6 +113,9 @@ void fields(V& v, TrackerConfig::Gesture& c) {
   v.number("walk_speed_mps", c.walk_speed_mps, Range{"m/s", 0, 100});
   v.number("swing_m", c.swing_m, Range{"m", 0.001, 100});
   v.number("swing_hold_s", c.swing_hold_s, Range{"s", 0, 3600});
+  v.number("rest_m", c.rest_m, Range{"m", 0, 100});
+  v.number("rest_hold_s", c.rest_hold_s, Range{"s", 0.05, 3600});
+  v.number("hang_before_hip_m", c.hang_before_hip_m, Range{"m", 0, 100});
   v.number("hang_rad", c.hang_rad, Range{"rad", 0, 3.1416});
   v.number("hang_elbow_rad", c.hang_elbow_rad, Range{"rad", 0, 3.1416});
   v.number("hang_over_hip_m", c.hang_over_hip_m, Range{"m", -100, 100});

@@ -71,10 +71,14 @@ struct TrackerConfig {
     // The right hand on its own hip ends it. It draws beside the hip too, so its palm must lie there, and for so long.
     double both_hip_m = 0.15;  ///< middle of the palm to the iliac crest
     double both_hold_s = 2.0;
-    // So does the right arm when it swings while one walks: it hangs, and goes to and fro beside the body.
+    // So does the right arm when it hangs: while one walks it goes to and fro beside the body, where one stands it
+    // rests.
     double walk_speed_mps = 0.55;        ///< of the pelvis, over a second
     double swing_m = 0.08;               ///< of the wrist forward and back, from the one to the other; 100: none swings
     double swing_hold_s = 0.6;           ///< for so long
+    double rest_m = 0.04;                ///< pelvis, and wrist against it, move less than this; 0: no arm rests
+    double rest_hold_s = 0.8;            ///< for so long
+    double hang_before_hip_m = 0.17;     ///< the resting wrist before or behind the hip joint: one that stoops draws
     double hang_rad = 0.35;              ///< from shoulder to wrist, against the plumb line
     double hang_elbow_rad = 2.4;         ///< inner angle between upper arm and forearm
     double hang_over_hip_m = 0.03;       ///< the wrist is not higher than this over the hip joint

@@ -80,7 +80,7 @@ bool HandOnHip::is_near(const SuitFrame& frame) const {
          below_with_hysteresis(state_.near, inside_hip, -config_.outside_hip_on_m, -config_.outside_hip_off_m);
 }
 
-std::optional<double> SwingingArm::step(const SuitFrame& frame) {
+std::optional<double> HangingArm::step(const SuitFrame& frame) {
   constexpr double kSampleS = 0.04, kWindowS = 1.0;
   if (frame.discontinuity) reset();
   const Pose& T_odom_pelvis = frame[Segment::Pelvis];
@@ -93,14 +93,32 @@ std::optional<double> SwingingArm::step(const SuitFrame& frame) {
     while (frame.time_s - samples_.front().time_s > kWindowS) samples_.pop_front();
   }
   if (!hangs || !swings())
-    since_s_.reset();
-  else if (!since_s_)
-    since_s_ = frame.time_s - 0.5 * kWindowS;  // for half of what was looked at, or more
-  const bool sure = since_s_ && frame.time_s - *since_s_ >= 0.5 * kWindowS + config_.swing_hold_s;
-  return sure ? since_s_ : std::nullopt;
+    swings_since_s_.reset();
+  else if (!swings_since_s_)
+    swings_since_s_ = frame.time_s - 0.5 * kWindowS;  // for half of what was looked at, or more
+  const bool swung = swings_since_s_ && frame.time_s - *swings_since_s_ >= 0.5 * kWindowS + config_.swing_hold_s;
+  const std::optional<double> rests_since_s = rested(frame, hangs);
+  return swung ? swings_since_s_ : rests_since_s;
 }
 
-bool SwingingArm::swings() const {
+std::optional<double> HangingArm::rested(const SuitFrame& frame, bool hangs) {
+  const Pose& T_odom_pelvis = frame[Segment::Pelvis];
+  const Vector3d wrist = T_odom_pelvis.inverse() * frame[kRight.hand].p;
+  const Vector3d hip = T_odom_pelvis.inverse() * frame[kRight.upper_leg].p;
+  if (!hangs || std::abs(wrist.x() - hip.x()) > config_.hang_before_hip_m) {
+    rest_.reset();
+    return std::nullopt;
+  }
+  // Once it has rested it draws nothing until it is raised, also on the way to the next thing.
+  if (rest_ && rest_->long_enough) return rest_->since_s;
+  const bool moved = !rest_ || (T_odom_pelvis.p - rest_->p_odom_pelvis).norm() > config_.rest_m ||
+                     (wrist - rest_->p_pelvis_wrist).norm() > config_.rest_m;
+  if (moved) rest_ = {frame.time_s, T_odom_pelvis.p, wrist, false};
+  rest_->long_enough = frame.time_s - rest_->since_s >= config_.rest_hold_s;
+  return rest_->long_enough ? std::optional(rest_->since_s) : std::nullopt;
+}
+
+bool HangingArm::swings() const {
   constexpr double kLeastS = 0.6, kJustNowS = 0.3;  // of samples to judge by; stands still as soon as that says so
   const Sample& last = samples_.back();
   const auto speed = [&](const Sample& since) {
@@ -115,28 +133,25 @@ bool SwingingArm::swings() const {
   return front->forward_m - back->forward_m > config_.swing_m;
 }
 
-void SwingingArm::reset() {
-  samples_.clear();
-  since_s_.reset();
-}
+void HangingArm::reset() { *this = HangingArm(config_); }
 
 GestureFold::GestureFold(const TrackerConfig::Gesture& config)
-    : left_(Side::Left, config), right_(Side::Right, second_hand(config)), swing_(config) {}
+    : left_(Side::Left, config), right_(Side::Right, second_hand(config)), hanging_(config) {}
 
 GestureState GestureFold::step(const SuitFrame& frame) {
   const HipState left = left_.step(frame);
   const HipState right = right_.step(frame);
-  const std::optional<double> swings_since_s = swing_.step(frame);
-  const bool free = !right.held && !swings_since_s;
-  GestureState state{left.near && free, left.held && free, swings_since_s};
-  if (right.held) state.none_since_s = std::min(right.rests_since_s, swings_since_s.value_or(HUGE_VAL));
+  const std::optional<double> hangs_since_s = hanging_.step(frame);
+  const bool free = !right.held && !hangs_since_s;
+  GestureState state{left.near && free, left.held && free, hangs_since_s};
+  if (right.held) state.none_since_s = std::min(right.rests_since_s, hangs_since_s.value_or(HUGE_VAL));
   return state;
 }
 
 void GestureFold::reset() {
   left_.reset();
   right_.reset();
-  swing_.reset();
+  hanging_.reset();
 }
 
 void GestureFold::resume(const std::array<HipState, 2>& hips) {

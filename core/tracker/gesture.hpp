@@ -19,7 +19,7 @@ enum class Side { Left, Right };
 struct GestureState {
   bool near = false;  ///< the left hand is near its hip, the right one free to draw
   bool held = false;  ///< … and has come to rest there
-  /// The right hand rests on its own hip, or swings as the wearer walks, since this stream time: from then on it was no
+  /// The right hand rests on its own hip, or hangs beside the body, since this stream time: from then on it was no
   /// gesture, as is only known now.
   std::optional<double> none_since_s;
 };
@@ -43,13 +43,14 @@ class HandOnHip {
   HipState state_;
 };
 
-/// Whether the wearer walks along with the right arm swinging beside the body. Many put the left hand on the hip while
-/// they still walk up, or leave it there on the way to the next thing: what the right one does then draws nothing. A
-/// hand that follows a wall or an edge stays where it is beside the body, however fast one walks.
-class SwingingArm {
+/// Whether the right arm hangs beside the body, swinging as the wearer walks or at rest where one stands. Many put the
+/// left hand on the hip while they still walk up or think, or leave it there on the way to the next thing: what the
+/// right one does then draws nothing. A hand that follows a wall or an edge stays where it is beside the body however
+/// fast one walks, and moves when one stands.
+class HangingArm {
  public:
-  explicit SwingingArm(const TrackerConfig::Gesture& config) : config_(config) {}
-  /// While it swings, and has for long enough to be sure: since which stream time.
+  explicit HangingArm(const TrackerConfig::Gesture& config) : config_(config) {}
+  /// While it hangs so, and has for long enough to be sure: since which stream time.
   std::optional<double> step(const SuitFrame& frame);
   void reset();
 
@@ -59,12 +60,19 @@ class SwingingArm {
     Eigen::Vector2d p_odom_pelvis;
     double forward_m;  ///< of the wrist before the shoulder, as the pelvis faces
   };
+  struct Rest {
+    double since_s;
+    Eigen::Vector3d p_odom_pelvis, p_pelvis_wrist;
+    bool long_enough;
+  };
   /// Over the last second, at the newest of the samples.
   [[nodiscard]] bool swings() const;
+  std::optional<double> rested(const SuitFrame& frame, bool hangs);
 
   TrackerConfig::Gesture config_;
   std::deque<Sample> samples_;
-  std::optional<double> since_s_;
+  std::optional<Rest> rest_;
+  std::optional<double> swings_since_s_;
 };
 
 /// The modelling gesture: the left hand on its hip and the right hand free. Both hands on the hips is a way to stand.
@@ -80,7 +88,7 @@ class GestureFold {
  private:
   HandOnHip left_;
   HandOnHip right_;
-  SwingingArm swing_;
+  HangingArm hanging_;
 };
 
 }  // namespace kinemap

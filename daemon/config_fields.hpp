@@ -172,6 +172,7 @@ void fields(V& v, TrackerConfig::Sitting& c) {
   v.number("min_unsupported_share", c.min_unsupported_share, Range{"1", 0, 1});
   v.number("min_unsupported_s", c.min_unsupported_s, Range{"s", 0, 3600});
   v.number("min_still_s", c.min_still_s, Range{"s", 0, 3600});
+  v.number("surely_still_s", c.surely_still_s, Range{"s", 0, 3600});
   v.number("dropout_s", c.dropout_s, Range{"s", 0, 3600});
   v.number("gap_s", c.gap_s, Range{"s", 0.001, 3600});
   v.number("moved_m", c.moved_m, Range{"m", 0, 100});

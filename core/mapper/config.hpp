@@ -88,7 +88,7 @@ struct MapperConfig {
     double seat_density_per_m2 = 0.3;
     double look_alike_share = 0.5;  ///< part of them that also have the same size, height and heading
     double min_evidence = 0.0;      ///< 2 ln of the odds that it is the known one, to close a loop
-    double joint_evidence = 0.0;  ///< a closure that has less by itself is not tried for the sake of others that it
+    double joint_evidence = 0.0;    ///< less by itself: not tried for the sake of others that it
                                     ///< bears out
     double free_space_most = 12.0;  ///< 2 ln of the odds that one thing standing, or walked, through another may count
                                     ///< for or against a closure; 0: it does not

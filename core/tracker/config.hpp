@@ -128,11 +128,12 @@ struct TrackerConfig {
     double outside_off_m = 0.03;
     double min_unsupported_share = 0.3;  ///< of the still time
     double min_unsupported_s = 1.0;
-    double min_still_s = 1.5;     ///< shorter bouts are dropped
-    double dropout_s = 0.4;       ///< the posture may be lost for so long without ending the bout
-    double gap_s = 2.0;           ///< without a frame for so long the bout ends
-    double moved_m = 0.5;         ///< the pelvis rested so far from where the bout began: another place, another bout
-    double hip_to_seat_m = 0.09;  ///< hip joints over the seat (hip joint to sitting bone)
+    double min_still_s = 1.5;      ///< shorter bouts are dropped
+    double surely_still_s = 15.0;  ///< so long still is a seat, whatever carries the weight
+    double dropout_s = 0.4;        ///< the posture may be lost for so long without ending the bout
+    double gap_s = 2.0;            ///< without a frame for so long the bout ends
+    double moved_m = 0.5;          ///< the pelvis rested so far from where the bout began: another place, another bout
+    double hip_to_seat_m = 0.09;   ///< hip joints over the seat (hip joint to sitting bone)
     double seat_behind_hip_m = 0.07;  ///< seat centre behind the hip mid-point
     double sample_s = 0.1;            ///< spacing of the samples that are averaged
     std::size_t max_samples =

@@ -128,8 +128,10 @@ std::optional<Sitting> SittingFold::reset() {
 }
 
 bool SittingFold::is_seat() const {
-  return !samples_.empty() && still_s_ >= config_.min_still_s && unsupported_s_ >= config_.min_unsupported_s &&
-         unsupported_s_ >= config_.min_unsupported_share * still_s_;
+  if (samples_.empty() || still_s_ < config_.min_still_s) return false;
+  // With the feet under the chair, or leaning forward, one sits over one's feet. Nobody squats like that for long.
+  return still_s_ >= config_.surely_still_s ||
+         (unsupported_s_ >= config_.min_unsupported_s && unsupported_s_ >= config_.min_unsupported_share * still_s_);
 }
 
 Sitting SittingFold::summary() const {

@@ -61,7 +61,7 @@ void SlipFold::hear(const Sample& before, const Sample& now) {
     if (!standing.since_s) standing.since_s = now.time_s;
     heard[i] = before.time_s - *standing.since_s >= config_.settle_s;
     turned[i] = -wrap_angle(now.feet[i].heading - before.feet[i].heading);
-    if (heard[i]) judge(i, now);
+    if (heard[i]) look(i, now);
   }
   const int count = int{heard[0]} + int{heard[1]};
   const Eigen::Rotation2Dd turned_before(slip_.turn_rad);
@@ -85,13 +85,13 @@ void SlipFold::hear(const Sample& before, const Sample& now) {
     for (std::size_t i = 0; i < 2; ++i) turn_alone_[i] += turned[i];
 }
 
-void SlipFold::judge(std::size_t foot, const Sample& now) {
-  std::optional<Sample>& judged = standing_[foot].judged;
-  if (!judged) judged = now;
-  if (now.time_s - judged->time_s < kLook) return;
-  const bool moved = (now.feet[foot].ball - judged->feet[foot].ball).head<2>().norm() > config_.held_m;
-  ++(moved ? moved_ : stayed_);
-  judged = now;
+void SlipFold::look(std::size_t foot, const Sample& now) {
+  Standing& standing = standing_[foot];
+  const Eigen::Vector3d& ball = now.feet[foot].ball;
+  if (standing.looked_s && now.time_s - *standing.looked_s < kLook) return;
+  if (standing.looked_s) ++((ball - standing.ball).head<2>().norm() > config_.held_m ? moved_ : stayed_);
+  standing.looked_s = now.time_s;
+  standing.ball = ball;
 }
 
 void SlipFold::begin() {

@@ -23,7 +23,7 @@ class SlipFold {
   std::optional<Slip> step(const SuitFrame& frame, const std::array<Sole, 2>& soles);
   /// From here on anew.
   void begin();
-  /// The suit's world is another one.
+  /// The suit's world is another one, or nothing is known of the feet since.
   void reset();
 
  private:
@@ -40,12 +40,13 @@ class SlipFold {
   /// Of one foot, as long as it stands.
   struct Standing {
     std::optional<double> since_s;
-    std::optional<Sample> judged;  ///< when it was last looked whether it moves
+    std::optional<double> looked_s;                  ///< when it was last looked whether it moves …
+    Eigen::Vector3d ball = Eigen::Vector3d::Zero();  ///< … and where it was
   };
 
   void hear(const Sample& before, const Sample& now);
   [[nodiscard]] bool stands(std::size_t foot, const Sample& middle) const;
-  void judge(std::size_t foot, const Sample& now);
+  void look(std::size_t foot, const Sample& now);
 
   TrackerConfig::Slip config_;
   std::deque<Sample> window_;

@@ -83,6 +83,7 @@ class Tracker::Impl {
     if (goes_on) traces_.move(T_odom_before, unseen_s);
     stance_.reset();
     slip_.reset();
+    slip_.begin();
     magnetic_.reset();
   }
 

@@ -71,6 +71,7 @@ std::string session_name(const sim::SimOptions& sim) {
   if (sim.rounds) key += format("-rounds%d", *sim.rounds);
   if (sim.packet_loss) key += format("-loss%g", *sim.packet_loss);
   if (sim.stature_m) key += format("-stature%g", *sim.stature_m);
+  if (!sim.hold_feet) key += "-slipping";
   if (sim.closure_spacing_m) key += format("-spacing%g", *sim.closure_spacing_m);
   return key +
          format("-shell%d-slop%g%s", static_cast<int>(sim.shell), sim.sloppiness, sim.distractors ? "" : "-plain");

@@ -20,7 +20,7 @@ struct Options {
   std::string cache, keep, markdown, config, recordings;
   double closure_spacing_m = 0.0;
   int rooms = 0, jobs = 0;
-  bool ablation = false, json = false;
+  bool ablation = false, slipping_feet = false, json = false;
 };
 
 /// The command that gives the same document; where things are kept does not matter.
@@ -30,6 +30,7 @@ std::string command_of(const Options& options) {
   std::string command = "bench accuracy --seeds " + options.seeds + " --drift " + drifts;
   if (options.rooms) command += format(" --rooms %d", options.rooms);
   if (options.ablation) command += " --ablation";
+  if (options.slipping_feet) command += " --slipping-feet";
   if (options.closure_spacing_m > 0.0) command += format(" --closure-spacing %g", options.closure_spacing_m);
   if (!options.recordings.empty()) command += " --recordings DIR";
   if (!options.config.empty()) command += " --config FILE";
@@ -46,6 +47,7 @@ std::string tables(const Study& study) {
   }
   text += scale_table(study.columns) + '\n' + ideal_table(study.columns) + '\n';
   if (!study.ablation.empty()) text += ablation_table(study.columns[study.ablated], study.ablation) + '\n';
+  if (!study.slipping.empty()) text += slipping_table(study.slipping) + '\n';
   if (!study.sparse.empty()) text += sparse_text(study.sparse) + '\n';
   return text + nothing_text(study);
 }
@@ -70,6 +72,10 @@ Json json_of(const Study& study) {
   for (const Column& column : study.columns) json[column.drift] = json_of(column.sessions);
   for (const LeverRuns& runs : study.ablation)
     json["ablation"][runs.lever.name] = eval::to_json(report_of(runs.sessions));
+  for (const SlippingFeet& runs : study.slipping) {
+    json["slipping_feet"][runs.drift]["heard"] = eval::to_json(report_of(runs.heard));
+    json["slipping_feet"][runs.drift]["not_heard"] = eval::to_json(report_of(runs.not_heard));
+  }
   if (!study.sparse.empty()) json["few_closures"] = json_of(study.sparse);
   for (const QuietRecording& recording : study.quiet) json["recordings"][recording.name] = recording.objects;
   return json;
@@ -89,6 +95,7 @@ int accuracy(const Options& options) {
     study.config = *config;
   }
   study.ablation = options.ablation;
+  study.slipping_feet = options.slipping_feet;
   study.sparse_spacing_m = options.closure_spacing_m;
   study.recordings = options.recordings;
   study.run = {.cache = options.cache, .keep = options.keep, .jobs = options.jobs, .label = ""};
@@ -107,7 +114,8 @@ void add_accuracy(CLI::App& app, cli::Run& run) {
   CLI::App* command = cli::add_command(
       app, run, "accuracy", "Simulate, build and evaluate many sessions: the paper's Table I and figure 6",
       "  bench accuracy --seeds 1-9\n"
-      "  bench accuracy --seeds 1-40 --drift good,default,bad --ablation --closure-spacing 30 --recordings DIR\n"
+      "  bench accuracy --seeds 1-40 --drift good,default,bad --ablation --slipping-feet\n"
+      "                 --closure-spacing 30 --recordings DIR "
       "                 --markdown docs/accuracy.md\n"
       "  bench accuracy --seeds 3 --keep out --json\n",
       options, accuracy);
@@ -121,6 +129,8 @@ void add_accuracy(CLI::App& app, cli::Run& run) {
   command->add_option("--config", options->config, "Configuration as for kinemapd")->type_name("FILE");
   command->add_flag("--ablation", options->ablation,
                     "Also build the default column's sessions with one part of the estimator off at a time");
+  command->add_flag("--slipping-feet", options->slipping_feet,
+                    "Also run the seeds with a suit that does not hold standing feet in place");
   command
       ->add_option("--closure-spacing", options->closure_spacing_m,
                    "Also run the seeds with something known touched only every so many metres: is the map still right?")

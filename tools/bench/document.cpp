@@ -173,6 +173,12 @@ std::optional<Error> worst(Document& document, const Study& study) {
 }
 
 void robustness(Document& document, const Study& study) {
+  if (!study.slipping.empty())
+    document.add(
+        "## When standing feet slip\n\nMVN holds a foot that stands where it is, and the simulated suits above do as "
+        "well. Of a suit that does not, standing feet tell how it slips as a whole (`docs/method.md`). The same seeds "
+        "with such suits, whose legs err by a quarter of what their arms do:\n\n" +
+        slipping_table(study.slipping) + '\n');
   if (!study.sparse.empty())
     document.add(format("## With closures only every %.0f m\n\n", study.sparse_spacing_m) + sparse_text(study.sparse) +
                  '\n');

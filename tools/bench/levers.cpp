@@ -41,6 +41,12 @@ constexpr Lever kLevers[] = {
 
 std::span<const Lever> levers() { return kLevers; }
 
+const Lever& feet_not_heard() {
+  static constexpr Lever kFeet{"feet not heard", "what standing feet say of the suit's slipping does not count",
+                               R"({"tracker": {"slip": {"held_m": 100}}})"};
+  return kFeet;
+}
+
 Result<Config> without(const Config& config, const Lever& lever) {
   nlohmann::ordered_json json = to_json(config);
   json.merge_patch(nlohmann::ordered_json::parse(lever.overrides));

@@ -17,6 +17,9 @@ struct Lever {
 /// All of them, in the order of the document. The one place to add one.
 std::span<const Lever> levers();
 
+/// One more, which counts only with a suit that does not hold standing feet in place.
+const Lever& feet_not_heard();
+
 /// `config` with the lever switched off. An Error when the override is no configuration.
 Result<Config> without(const Config& config, const Lever& lever);
 

@@ -68,6 +68,21 @@ std::optional<Error> run_ablation(const StudyOptions& options, Study& study) {
   return std::nullopt;
 }
 
+std::optional<Error> run_slipping(const StudyOptions& options, Study& study) {
+  const auto deaf = without(options.config, feet_not_heard());
+  if (!deaf) return Error{deaf.error()};
+  StudyOptions slipping = options;
+  slipping.sim.hold_feet = false;
+  slipping.run.keep.clear();
+  for (const std::string& drift : options.drifts) {
+    slipping.run.label = "slipping feet, " + drift + " drift";
+    auto runs = run_sessions(sessions_of(slipping, drift), {options.config, *deaf}, slipping.run);
+    if (!runs) return Error{slipping.run.label + ", " + runs.error()};
+    study.slipping.push_back({drift, std::move((*runs)[0]), std::move((*runs)[1])});
+  }
+  return std::nullopt;
+}
+
 std::optional<Error> run_sparse(const StudyOptions& options, Study& study) {
   StudyOptions sparse = options;
   study.sparse_spacing_m = options.sparse_spacing_m;
@@ -103,6 +118,8 @@ Result<Study> run_study(const StudyOptions& options) {
   if (auto error = run_columns(all, study)) return *error;
   if (all.ablation)
     if (auto error = run_ablation(all, study)) return *error;
+  if (all.slipping_feet)
+    if (auto error = run_slipping(all, study)) return *error;
   if (all.sparse_spacing_m > 0.0)
     if (auto error = run_sparse(all, study)) return *error;
   if (!all.recordings.empty())

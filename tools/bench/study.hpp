@@ -34,6 +34,12 @@ struct LeverRuns {
   std::vector<Session> sessions;
 };
 
+/// A column with a suit that does not hold standing feet in place.
+struct SlippingFeet {
+  std::string drift;
+  std::vector<Session> heard, not_heard;
+};
+
 /// A recording in which nothing is drawn and nobody sits.
 struct QuietRecording {
   std::string name;
@@ -47,6 +53,7 @@ struct StudyOptions {
   sim::SimOptions sim;  ///< seed, drift and sloppiness are filled in
   Config config;
   bool ablation = false;          ///< of the default column, or of the first one
+  bool slipping_feet = false;     ///< the same seeds once more, with a suit that does not hold standing feet in place
   double sparse_spacing_m = 0.0;  ///< > 0: the same seeds once more, with closures only so often
   std::string recordings;         ///< directory of recordings in which nothing is to be found; empty: none
   RunOptions run;
@@ -57,6 +64,7 @@ struct Study {
   std::vector<Column> columns;
   std::size_t ablated = 0;          ///< index of the column
   std::vector<LeverRuns> ablation;  ///< empty: not run
+  std::vector<SlippingFeet> slipping;
   double sparse_spacing_m = 0.0;
   std::vector<Session> sparse;
   std::vector<QuietRecording> quiet;

@@ -53,6 +53,21 @@ std::vector<const Session*> all_sessions(const Study& study) {
   return all;
 }
 
+const char* const kComparisonHead =
+    "| | tables % | big % | small % | walls % | RMSE m | found % | false | double | wrong visits | what that means |\n"
+    "|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+std::string comparison_row(const std::string& name, const std::vector<Session>& sessions, const char* meaning) {
+  const eval::Report report = report_of(sessions);
+  std::string text = "| " + name + " |";
+  for (const PaperRow& paper : kPaper) text += cell(mean_percent(edge_errors(report, paper.klass)));
+  std::size_t spurious = 0;
+  for (const Session& session : sessions) spurious += session.evaluation.spurious.size();
+  return text + format(" %.3f | %.1f | %zu | %zu | %zu | %s |\n", report.rmse_optimised_m.mean,
+                       100.0 * eval::recall(report.total), spurious, report.total.duplicates, report.association.wrong,
+                       meaning);
+}
+
 }  // namespace
 
 std::string coverage_text(const Study& study) {
@@ -174,22 +189,17 @@ std::string ideal_table(const std::vector<Column>& columns) {
 }
 
 std::string ablation_table(const Column& full, const std::vector<LeverRuns>& ablation) {
-  std::string text =
-      "| | tables % | big % | small % | walls % | RMSE m | found % | false | double | wrong visits | what that means "
-      "|\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n";
-  const auto row = [&](const char* name, const std::vector<Session>& sessions, const char* meaning) {
-    const eval::Report report = report_of(sessions);
-    text += format("| %s |", name);
-    for (const PaperRow& paper : kPaper) text += cell(mean_percent(edge_errors(report, paper.klass)));
-    std::size_t spurious = 0;
-    for (const Session& session : sessions) spurious += session.evaluation.spurious.size();
-    text += format(" %.3f | %.1f | %zu | %zu | %zu | %s |\n", report.rmse_optimised_m.mean,
-                   100.0 * eval::recall(report.total), spurious, report.total.duplicates, report.association.wrong,
-                   meaning);
-  };
-  row("**everything on**", full.sessions, "");
-  for (const LeverRuns& runs : ablation) row(runs.lever.name, runs.sessions, runs.lever.meaning);
+  std::string text = kComparisonHead + comparison_row("**everything on**", full.sessions, "");
+  for (const LeverRuns& runs : ablation) text += comparison_row(runs.lever.name, runs.sessions, runs.lever.meaning);
+  return text;
+}
+
+std::string slipping_table(const std::vector<SlippingFeet>& slipping) {
+  std::string text = kComparisonHead;
+  for (const SlippingFeet& runs : slipping) {
+    text += comparison_row("**" + runs.drift + "**", runs.heard, "");
+    text += comparison_row(runs.drift + ", " + feet_not_heard().name, runs.not_heard, feet_not_heard().meaning);
+  }
   return text;
 }
 

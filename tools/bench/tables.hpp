@@ -23,6 +23,8 @@ std::string scale_table(const std::vector<Column>& columns);
 std::string ideal_table(const std::vector<Column>& columns);
 std::string ablation_table(const Column& full, const std::vector<LeverRuns>& ablation);
 /// Is the map still right but for its measures?
+/// Feet heard and not, of each column.
+std::string slipping_table(const std::vector<SlippingFeet>& slipping);
 std::string sparse_text(const std::vector<Session>& sessions);
 /// Objects that came of gestures and recordings that mean nothing.
 std::string nothing_text(const Study& study);

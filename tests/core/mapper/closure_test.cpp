@@ -139,10 +139,17 @@ MapState seats_before_and_after_a_long_way(const std::array<double, 2>& off) {
   return state;
 }
 
-TEST(JointClosure, WhatIsUncertainAloneIsCertainTogether) {
+/// Where nothing comes twice.
+MapperConfig together() {
+  MapperConfig config;
+  config.association.joint_evidence = -10.0;
+  return config;
+}
+
+TEST(JointClosure, WhatIsUncertainAloneIsCertainTogetherWhereNothingComesTwice) {
   constexpr double kDrift = 1.4;  // m
   MapState state = seats_before_and_after_a_long_way({kDrift, kDrift});
-  LoopCloser closer{MapperConfig{}};
+  LoopCloser closer{together()};
   ASSERT_TRUE(closer.settle(state, 30));
   const auto marginals = graph::Marginals::compute(state.graph);
   ASSERT_TRUE(marginals);
@@ -156,9 +163,17 @@ TEST(JointClosure, WhatIsUncertainAloneIsCertainTogether) {
   EXPECT_EQ(state.summary.loop_closures, 2U);
 }
 
+TEST(JointClosure, LikeThingsComeInRows) {
+  MapState state = seats_before_and_after_a_long_way({1.4, 1.4});  // two rows of seats may well be 1.4 m apart
+  LoopCloser closer{MapperConfig{}};
+  ASSERT_TRUE(closer.settle(state, 30));
+  EXPECT_FALSE(closer.resolve(state, 3));
+  for (const std::size_t seat : {2U, 3U}) EXPECT_TRUE(state.graph.landmarks[seat].active) << seat;
+}
+
 TEST(JointClosure, NotWhatDoesNotFitTogether) {
   MapState state = seats_before_and_after_a_long_way({1.4, 0.4});
-  LoopCloser closer{MapperConfig{}};
+  LoopCloser closer{together()};
   ASSERT_TRUE(closer.settle(state, 30));
   EXPECT_FALSE(closer.resolve(state, 3));
   for (const std::size_t seat : {2U, 3U}) EXPECT_TRUE(state.graph.landmarks[seat].active) << seat;

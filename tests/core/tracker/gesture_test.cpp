@@ -202,6 +202,34 @@ TEST(Gesture, TheRightArmThatSwingsWhileOneWalksIsNone) {
   }
 }
 
+TEST(Gesture, TheRightArmThatHangsAtRestIsNone) {
+  for (const Case& c : cases()) {
+    const Puppet puppet(c.stature_m, c.errors);
+    const auto hang = [](double) { return with_arms(standing(), on_hip(), hanging()); };
+    const auto draw = [](double t) { return with_arms(standing(), on_hip(), drawing(t)); };
+    // Thinks with the hand on the hip, draws, looks at it; turns to the next thing.
+    const auto turn = [](double t) {
+      Figure f = with_arms(standing(), on_hip(), hanging());
+      f.heading = 0.8 * t;
+      return f;
+    };
+    const std::vector<Act> acts{{2.0, [](double) { return standing(); }},
+                                {4.0, hang},
+                                {6.0, draw},
+                                {2.0, hang},
+                                {2.0, turn},
+                                {6.0, draw},
+                                {3.0, hang},
+                                {2.0, [](double) { return standing(); }}};
+    const Outcome outcome = track(perform(puppet, acts, c.sampling));
+    ASSERT_EQ(outcome.traces.size(), 2u) << describe(c);
+    EXPECT_NEAR(outcome.traces[0].begin_s, 6.0, 1.0) << describe(c);
+    EXPECT_NEAR(outcome.traces[0].end_s, 12.0, 1.0) << describe(c);
+    EXPECT_NEAR(outcome.traces[1].begin_s, 16.0, 1.0) << describe(c);
+    EXPECT_NEAR(outcome.traces[1].end_s, 22.0, 1.0) << describe(c);
+  }
+}
+
 // The hand is as low, and the wearer as fast, but it stays beside the body.
 TEST(Gesture, AHandThatFollowsAnEdgeWhileOneWalksDraws) {
   for (const Case& c : cases()) {

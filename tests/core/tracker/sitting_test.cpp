@@ -84,6 +84,18 @@ TEST(Sitting, OtherPosturesAreNoSeats) {
   }
 }
 
+TEST(Sitting, WhoSitsOverTheFeetIsSeenAfterAWhile) {
+  for (const Case& c : cases()) {
+    const Puppet puppet(c.stature_m, c.errors);
+    const auto acts = between_standing(25.0, [&](double) { return sitting_leaning(puppet, 0.45); });
+    const auto frames = perform(puppet, acts, c.sampling);
+    EXPECT_EQ(track(frames).sittings.size(), 1u) << describe(c);
+    TrackerConfig config;
+    config.sitting.surely_still_s = 1000.0;
+    EXPECT_TRUE(track(frames, config).sittings.empty()) << describe(c) << ": nothing but the time tells";
+  }
+}
+
 // Seat where the hips were, facing where the pelvis faced, at the seat's height: exactly without suit errors.
 TEST(Sitting, SeatPoseIsThatOfTheHips) {
   for (const double stature : {1.55, 1.75, 1.95}) {

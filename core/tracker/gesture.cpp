@@ -80,7 +80,7 @@ bool HandOnHip::is_near(const SuitFrame& frame) const {
          below_with_hysteresis(state_.near, inside_hip, -config_.outside_hip_on_m, -config_.outside_hip_off_m);
 }
 
-std::optional<double> HangingArm::step(const SuitFrame& frame) {
+std::optional<double> HangingArm::step(const SuitFrame& frame, bool left_near) {
   constexpr double kSampleS = 0.04, kWindowS = 1.0;
   if (frame.discontinuity) reset();
   const Pose& T_odom_pelvis = frame[Segment::Pelvis];
@@ -97,7 +97,7 @@ std::optional<double> HangingArm::step(const SuitFrame& frame) {
   else if (!swings_since_s_)
     swings_since_s_ = frame.time_s - 0.5 * kWindowS;  // for half of what was looked at, or more
   const bool swung = swings_since_s_ && frame.time_s - *swings_since_s_ >= 0.5 * kWindowS + config_.swing_hold_s;
-  const std::optional<double> rests_since_s = rested(frame, hangs);
+  const std::optional<double> rests_since_s = rested(frame, hangs && left_near);
   return swung ? swings_since_s_ : rests_since_s;
 }
 
@@ -141,7 +141,7 @@ GestureFold::GestureFold(const TrackerConfig::Gesture& config)
 GestureState GestureFold::step(const SuitFrame& frame) {
   const HipState left = left_.step(frame);
   const HipState right = right_.step(frame);
-  const std::optional<double> hangs_since_s = hanging_.step(frame);
+  const std::optional<double> hangs_since_s = hanging_.step(frame, left.near);
   const bool free = !right.held && !hangs_since_s;
   GestureState state{left.near && free, left.held && free, hangs_since_s};
   if (right.held) state.none_since_s = std::min(right.rests_since_s, hangs_since_s.value_or(HUGE_VAL));

@@ -50,8 +50,9 @@ class HandOnHip {
 class HangingArm {
  public:
   explicit HangingArm(const TrackerConfig::Gesture& config) : config_(config) {}
-  /// While it hangs so, and has for long enough to be sure: since which stream time.
-  std::optional<double> step(const SuitFrame& frame);
+  /// While it hangs so, and has for long enough to be sure: since which stream time. At rest it hangs for everybody;
+  /// that counts only while the left hand is at its hip.
+  std::optional<double> step(const SuitFrame& frame, bool left_near);
   void reset();
 
  private:

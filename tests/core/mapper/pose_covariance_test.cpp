@@ -14,18 +14,18 @@ namespace {
 graph::Graph walk(std::size_t poses, const MapperConfig::Odometry& config) {
   std::mt19937 random(3);
   graph::Graph graph;
-  KeyPose before;
+  Pose T_odom_before;
   Odometry odometry(config);
   for (std::size_t i = 0; i < poses; ++i) {
-    KeyPose next = before;
+    KeyPose next;
     next.id = static_cast<KeyPoseId>(i);
     const double turn = std::normal_distribution(0.1, 0.3)(random);
-    if (i > 0) next.T_odom_pelvis = before.T_odom_pelvis * level_pose({0.2, 0.0, 0.0}, turn);
+    if (i > 0) next.T_odom_pelvis = T_odom_before * level_pose({0.2, 0.0, 0.0}, turn);
     next.time_s = 0.3 * static_cast<double>(i);
     next.path_m = 0.2;
     next.turn_rad = std::abs(turn);
     odometry.add(next, graph);
-    before = next;
+    T_odom_before = next.T_odom_pelvis;
   }
   return graph;
 }

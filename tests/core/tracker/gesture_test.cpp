@@ -205,11 +205,11 @@ TEST(Gesture, TheRightArmThatSwingsWhileOneWalksIsNone) {
 TEST(Gesture, TheRightArmThatHangsAtRestIsNone) {
   for (const Case& c : cases()) {
     const Puppet puppet(c.stature_m, c.errors);
-    const auto hang = [](double) { return with_arms(standing(), on_hip(), hanging()); };
+    const auto hang = [](double) { return with_arms(standing(), on_hip(), swinging(0.0)); };
     const auto draw = [](double t) { return with_arms(standing(), on_hip(), drawing(t)); };
     // Thinks with the hand on the hip, draws, looks at it; turns to the next thing.
     const auto turn = [](double t) {
-      Figure f = with_arms(standing(), on_hip(), hanging());
+      Figure f = with_arms(standing(), on_hip(), swinging(0.0));
       f.heading = 0.8 * t;
       return f;
     };
@@ -318,7 +318,10 @@ TEST(Trace, ShortDropOutsDoNotSplitLongOnesDo) {
 
 TEST(Trace, TooShortOrWithoutMotionIsRejectedAndCounted) {
   const Puppet puppet;
-  const auto still = between_standing(6.0, [&](double) { return with_arms(standing(), on_hip(), hanging()); });
+  const auto pointing = [](const ArmSpec& left) {
+    return [left](double) { return with_arms(standing(), left, drawing(0)); };
+  };
+  const std::vector<Act> still{{2.0, pointing(hanging())}, {6.0, pointing(on_hip())}, {2.0, pointing(hanging())}};
   const Outcome without_motion = track(perform(puppet, still));
   EXPECT_TRUE(without_motion.traces.empty());
   EXPECT_EQ(without_motion.stats.traces_rejected, 1u);

@@ -15,9 +15,9 @@ constexpr double kRate = 120.0;
 
 /// A pelvis over two feet, and where the suit thinks that all of it is.
 struct Stream {
-  std::function<Pose(double t)> pelvis = [](double) { return level(0.0, 0.0, 0.95, 0.0); };
-  std::function<Pose(std::size_t foot, double t)> foot = [](std::size_t foot, double) {
-    return level(0.0, foot == 0 ? 0.1 : -0.1, 0.08, 0.0);
+  std::function<Pose(double)> pelvis = [](double) { return level(0.0, 0.0, 0.95, 0.0); };
+  std::function<Pose(std::size_t side, double t)> foot = [](std::size_t side, double) {
+    return level(0.0, side == 0 ? 0.1 : -0.1, 0.08, 0.0);
   };
   std::function<Pose(double t)> slip = [](double) { return Pose{}; };  ///< T_odom_true
   bool held = false;                                                   ///< the suit does not let feet slip
@@ -54,12 +54,13 @@ std::optional<Slip> heard(const Stream& stream, double begin_s, double end_s, do
   return slip;
 }
 
-/// Walks along x at 1 m/s, each foot half of the time on the floor.
+/// Stands for 6 s, then walks along x at 1 m/s, each foot 60 % of the time on the floor.
 Stream walk() {
   Stream stream;
-  stream.pelvis = [](double t) { return Stream::level(t, 0.0, 0.95, 0.0); };
+  stream.pelvis = [](double t) { return Stream::level(std::max(0.0, t - 6.0), 0.0, 0.95, 0.0); };
   stream.foot = [](std::size_t foot, double t) {
-    const double steps = t / 1.2 + (foot == 0 ? 0.0 : 0.5), n = std::floor(steps), phase = steps - n;
+    const double steps = std::max(0.0, t - 6.0) / 1.2 + (foot == 0 ? 0.0 : 0.5), n = std::floor(steps),
+                 phase = steps - n;
     const double swing = std::clamp((phase - 0.6) / 0.4, 0.0, 1.0), ahead = 1.2 * (0.5 - 0.5 * std::cos(swing * M_PI));
     return Stream::level(1.2 * (n - (foot == 0 ? 0.0 : 0.5)) + 0.3 + ahead, foot == 0 ? 0.1 : -0.1,
                          0.08 + 0.15 * std::sin(swing * M_PI), 0.0);
@@ -102,14 +103,14 @@ TEST(Slip, WhatTheBodyDoesOverItsFeetIsNoSlip) {
 }
 
 TEST(Slip, OnTheWayEachFootTellsWhileItStands) {
+  constexpr double kTurn = 0.1 * kDegree;  // a second, about the origin: far from there the feet slide as well
   Stream stream = walk();
-  stream.slip = [](double t) {
-    return Stream::level(0.05 * t, 0.0, 0.0, kDegree * t);
-  };  // about the origin: y grows too
+  stream.slip = [](double t) { return Stream::level(0.02 * t, 0.0, 0.0, kTurn * t); };
   const auto slip = heard(stream, 12.0, 24.0);
   ASSERT_TRUE(slip);
   EXPECT_GT(slip->stood_s, 6.0);
-  EXPECT_NEAR(slip->turn_rad, -kDegree * slip->stood_s, 0.2 * kDegree);
+  EXPECT_NEAR(slip->turn_rad, -kTurn * slip->stood_s, 0.02 * kDegree);
+  EXPECT_LT(slip->way_m.x(), -0.02 * 6.0);
 }
 
 TEST(Slip, ASuitThatHoldsStandingFeetIsNotHeard) {

@@ -32,8 +32,8 @@ struct TrackerConfig {
   /// Standing feet, by which the suit's own slipping shows.
   struct Slip {
     double speed_mps = 0.12;      ///< ankle and ball of a standing foot are slower than this
-    double turn_rad_per_s = 0.5;  ///< and it turns more slowly than this
-    double settle_s = 0.15;       ///< it has stood for so long before it is heard
+    double turn_rad_per_s = 0.1;  ///< and it turns more slowly than this
+    double settle_s = 0.3;        ///< it has stood for so long before it is heard
     double held_m = 0.0015;  ///< a suit whose standing feet move less than this in a second holds them in place, and
                              ///< they say nothing; 100: no suit is heard
   } slip;

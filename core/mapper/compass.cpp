@@ -14,9 +14,9 @@ constexpr std::size_t kFirstNorth = 1;
 constexpr double kSameNorth = 10.0;  // s: so long a north is taken for one number
 constexpr double kShortest = 0.01;   // s
 
-double seconds_between(const KeyPose& from, const KeyPose& to) { return std::max(kShortest, to.time_s - from.time_s); }
-
 }  // namespace
+
+double seconds_between(const KeyPose& from, const KeyPose& to) { return std::max(kShortest, to.time_s - from.time_s); }
 
 double heading_sigma(const KeyPose& from, const KeyPose& to, bool magnetic, const MapperConfig::Odometry& config) {
   const double rate = magnetic ? config.magnetic_rad_per_sqrt_s : config.heading_rad_per_sqrt_s;

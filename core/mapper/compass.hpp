@@ -36,6 +36,9 @@ class Compass {
   double north_since_s_ = 0.0;  ///< the newest north holds from then on
 };
 
+/// From one key pose to the next, s, and at least 10 ms: noise and weights divide by it.
+double seconds_between(const KeyPose& from, const KeyPose& to);
+
 /// Noise of the heading from one key pose to the next, standard deviation in rad. `magnetic`: beside metal.
 double heading_sigma(const KeyPose& from, const KeyPose& to, bool magnetic, const MapperConfig::Odometry& config);
 

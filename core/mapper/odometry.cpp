@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kStep = 0.08;       // m: a stance foot that is farther from the one before has climbed a step
 constexpr int kSteadyStances = 3;    // so many level stances in a row are a level
-constexpr double kShortest = 0.01;   // s
 constexpr double kLeastStood = 0.5;  // of a step; of less the feet cannot tell how far the body turned
 constexpr double kSameLevel = 0.15;  // m: closer to a known level than this is that level
 
@@ -51,7 +50,7 @@ bool same_world(const KeyPose& from, const KeyPose& to) {
 
 /// Part of a step during which feet stood and were heard.
 double stood_share(const KeyPose& from, const KeyPose& to) {
-  return to.slip ? std::clamp(to.slip->stood_s / std::max(kShortest, to.time_s - from.time_s), 0.0, 1.0) : 0.0;
+  return to.slip ? std::clamp(to.slip->stood_s / seconds_between(from, to), 0.0, 1.0) : 0.0;
 }
 
 /// What the feet count beside the suit, on the way that they stood on.
@@ -64,7 +63,7 @@ double weight_of_feet(const MapperConfig::Odometry& config) {
 std::optional<double> turn_sigma(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
   const double share = stood_share(from, to);
   if (to.discontinuity || share < kLeastStood) return std::nullopt;
-  const double seconds = std::max(kShortest, to.time_s - from.time_s);
+  const double seconds = seconds_between(from, to);
   const double unseen = 2.0 * squared(config.heading_rad_per_sqrt_s) * (1.0 - share) * seconds;
   return std::sqrt(squared(config.feet_rad_per_sqrt_s) * seconds + squared(to.slip->apart_rad) + unseen);
 }
@@ -85,7 +84,7 @@ Pose odometry_step(const KeyPose& from, const KeyPose& to, const MapperConfig::O
 
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config) {
   if (to.discontinuity) return break_sqrt_information(to.time_s - from.time_s, config);
-  const double dt = std::max(kShortest, to.time_s - from.time_s);
+  const double dt = seconds_between(from, to);
   const double feet = stood_share(from, to) * weight_of_feet(config);
   const double level = std::sqrt((1.0 - feet) * squared(config.translation_m_per_sqrt_m) * to.path_m +
                                  squared(config.translation_m_per_sqrt_s) * dt + squared(0.001));

@@ -10,9 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array<Segment, 2> kFoot{Segment::LeftFoot, Segment::RightFoot};
-constexpr std::array<Segment, 2> kToe{Segment::LeftToe, Segment::RightToe};
-
 // The stream has no outline of the foot: typical sizes, m.
 constexpr double kHeelBehindAnkle = 0.05;
 constexpr double kTipBeforeBall = 0.06;

@@ -9,6 +9,10 @@
 
 namespace kinemap {
 
+/// Left [0] and right [1].
+inline constexpr std::array<Segment, 2> kFoot{Segment::LeftFoot, Segment::RightFoot};
+inline constexpr std::array<Segment, 2> kToe{Segment::LeftToe, Segment::RightToe};
+
 /// Points on the sole of one foot, odom frame, m. MVN gives the ankle and the ball of the foot; the sole lies
 /// `ball_height_m` under the ball, and under the ankle by the same plus the drop from ankle to ball in the foot's own
 /// frame, so it suits every foot size.

@@ -9,8 +9,6 @@
 namespace kinemap {
 namespace {
 
-constexpr std::array<Segment, 2> kFoot{Segment::LeftFoot, Segment::RightFoot};
-constexpr std::array<Segment, 2> kToe{Segment::LeftToe, Segment::RightToe};
 constexpr double kWindow = 0.15;      // s over which speeds are judged
 constexpr double kLongestGap = 0.15;  // s without a frame; nothing is known of a foot after more
 constexpr double kLow = 0.06;         // m: a foot whose ball is so far over the other's is in the air
@@ -36,7 +34,7 @@ std::optional<Slip> SlipFold::step(const SuitFrame& frame, const std::array<Sole
     heard_ = *middle;
   }
   if (moved_ < kLeastMoved || moved_ <= stayed_ || slip_.stood_s == 0.0) return std::nullopt;
-  slip_.apart_rad = std::abs(turn_alone_[0] - turn_alone_[1]);
+  slip_.apart_rad = std::abs(apart_rad_);
   return slip_;
 }
 
@@ -50,8 +48,7 @@ bool SlipFold::stands(std::size_t foot, const Sample& middle) const {
 }
 
 void SlipFold::hear(const Sample& before, const Sample& now) {
-  std::array<bool, 2> heard{};
-  std::array<double, 2> turned{};
+  std::array<std::optional<double>, 2> turned;  // by each foot that is heard
   for (std::size_t i = 0; i < 2; ++i) {
     Standing& standing = standing_[i];
     if (!stands(i, now)) {
@@ -59,30 +56,29 @@ void SlipFold::hear(const Sample& before, const Sample& now) {
       continue;
     }
     if (!standing.since_s) standing.since_s = now.time_s;
-    heard[i] = before.time_s - *standing.since_s >= config_.settle_s;
+    if (before.time_s - *standing.since_s < config_.settle_s) continue;
     turned[i] = -wrap_angle(now.feet[i].heading - before.feet[i].heading);
-    if (heard[i]) look(i, now);
+    look(i, now);
   }
-  const int count = int{heard[0]} + int{heard[1]};
-  const Eigen::Rotation2Dd turned_before(slip_.turn_rad);
-  if (count > 0) slip_.turn_rad += (heard[0] ? turned[0] : 0.0) / count + (heard[1] ? turned[1] : 0.0) / count;
-  const Eigen::Rotation2Dd turned_now(slip_.turn_rad);
-
+  const int count = int{turned[0].has_value()} + int{turned[1].has_value()};
   const Eigen::Vector2d streamed = now.p_pelvis - before.p_pelvis;
-  Eigen::Vector2d way = turned_now * streamed;
-  if (count > 0) {
-    way.setZero();
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (!heard[i]) continue;
-      const Eigen::Vector2d from_foot_before = before.p_pelvis - before.feet[i].ball.head<2>();
-      const Eigen::Vector2d from_foot = now.p_pelvis - now.feet[i].ball.head<2>();
-      way += (turned_now * from_foot - turned_before * from_foot_before) / count;
-    }
-    slip_.stood_s += now.time_s - before.time_s;
+  const Eigen::Rotation2Dd turned_before(slip_.turn_rad);
+  if (count == 0) {
+    slip_.way_m += turned_before * streamed - streamed;
+    return;
+  }
+  slip_.turn_rad += (turned[0].value_or(0.0) + turned[1].value_or(0.0)) / count;
+  const Eigen::Rotation2Dd turned_now(slip_.turn_rad);
+  Eigen::Vector2d way = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!turned[i]) continue;
+    const Eigen::Vector2d from_foot_before = before.p_pelvis - before.feet[i].ball.head<2>();
+    const Eigen::Vector2d from_foot = now.p_pelvis - now.feet[i].ball.head<2>();
+    way += (turned_now * from_foot - turned_before * from_foot_before) / count;
   }
   slip_.way_m += way - streamed;
-  if (count == 2)
-    for (std::size_t i = 0; i < 2; ++i) turn_alone_[i] += turned[i];
+  slip_.stood_s += now.time_s - before.time_s;
+  if (count == 2) apart_rad_ += *turned[0] - *turned[1];
 }
 
 void SlipFold::look(std::size_t foot, const Sample& now) {
@@ -96,7 +92,7 @@ void SlipFold::look(std::size_t foot, const Sample& now) {
 
 void SlipFold::begin() {
   slip_ = {};
-  turn_alone_ = {};
+  apart_rad_ = 0.0;
 }
 
 void SlipFold::reset() {

@@ -53,8 +53,8 @@ class SlipFold {
   std::optional<Sample> heard_;  ///< up to this one
   std::array<Standing, 2> standing_;
   Slip slip_;
-  std::array<double, 2> turn_alone_{};  ///< of each foot while both stood
-  int moved_ = 0, stayed_ = 0;          ///< seconds that feet stood through, in this session
+  double apart_rad_ = 0.0;      ///< the left foot's turn less the right one's, while both stood
+  int moved_ = 0, stayed_ = 0;  ///< seconds that feet stood through, in this session
 };
 
 }  // namespace kinemap

@@ -7,7 +7,6 @@
 namespace kinemap {
 
 std::optional<Eigen::Vector3d> StanceFold::step(const SuitFrame& frame, const std::array<Sole, 2>& soles) {
-  constexpr std::array<Segment, 2> kFoot{Segment::LeftFoot, Segment::RightFoot};
   std::array<bool, 2> rests{};
   for (std::size_t i = 0; i < 2; ++i) {
     const Pose& foot = frame[kFoot[i]];

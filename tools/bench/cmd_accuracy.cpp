@@ -115,8 +115,7 @@ void add_accuracy(CLI::App& app, cli::Run& run) {
       app, run, "accuracy", "Simulate, build and evaluate many sessions: the paper's Table I and figure 6",
       "  bench accuracy --seeds 1-9\n"
       "  bench accuracy --seeds 1-40 --drift good,default,bad --ablation --slipping-feet\n"
-      "                 --closure-spacing 30 --recordings DIR "
-      "                 --markdown docs/accuracy.md\n"
+      "                 --closure-spacing 30 --recordings DIR --markdown docs/accuracy.md\n"
       "  bench accuracy --seeds 3 --keep out --json\n",
       options, accuracy);
   command->add_option("--seeds", options->seeds, "Which sessions")->capture_default_str();

@@ -22,9 +22,9 @@ std::string scale_table(const std::vector<Column>& columns);
 /// Screens and tables that were drawn all round, beside what the best linear unbiased estimator makes of them.
 std::string ideal_table(const std::vector<Column>& columns);
 std::string ablation_table(const Column& full, const std::vector<LeverRuns>& ablation);
-/// Is the map still right but for its measures?
 /// Feet heard and not, of each column.
 std::string slipping_table(const std::vector<SlippingFeet>& slipping);
+/// Is the map still right but for its measures?
 std::string sparse_text(const std::vector<Session>& sessions);
 /// Objects that came of gestures and recordings that mean nothing.
 std::string nothing_text(const Study& study);

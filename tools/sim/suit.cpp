@@ -29,19 +29,15 @@ Suit::Suit(const Wearer& wearer, const Score& score, const Gait& gait, const Per
       true_pelvis_(level_way(performer)),
       tilt_{Wander(radians(column.tilt_limit_deg) / 2.5, kTiltTau_s, random),
             Wander(radians(column.tilt_limit_deg) / 2.5, kTiltTau_s, random)},
-      arms_{make_arm(random), make_arm(random)},
-      hold_feet_(hold_feet) {
+      arms_{make_arm(random), make_arm(random)} {
   slip_ = make_slip(true_pelvis_, score, gait, column, patches_, random);
-  if (!hold_feet) legs_ = {make_leg(random), make_leg(random)};
+  if (!hold_feet) legs_ = std::array{make_leg(random), make_leg(random)};
 }
 
 Suit::Leg Suit::make_leg(Random& random) const {
   // Legs carry their weight and err by a quarter of what arms do, along a chain of about a metre.
   const double sigma = 0.25 * radians(column_.arm_deg);
-  Leg leg;
-  for (int i = 0; i < 2; ++i) leg.place.emplace_back(sigma, kArmTau_s, random);
-  leg.turn.emplace_back(sigma, kArmTau_s, random);
-  return leg;
+  return {Wander(sigma, kArmTau_s, random), Wander(sigma, kArmTau_s, random), Wander(sigma, kArmTau_s, random)};
 }
 
 Suit::Arm Suit::make_arm(Random& random) const {
@@ -135,14 +131,15 @@ void Suit::report_leg(Side side, std::size_t i, const Pose23& truth, Pose23& out
     next = state.plant + 1;
     u = smooth_step(static_cast<double>(i - from.lift) / static_cast<double>(plants[next].land - from.lift));
   }
-  const std::size_t a = hold_feet_ ? frame_of(state.plant) : i, b = hold_feet_ ? frame_of(next) : i;
+  const std::size_t a = legs_ ? i : frame_of(state.plant), b = legs_ ? i : frame_of(next);
   Vec3 ball = reported_ball(side, a, state.ball) * (1.0 - u) + reported_ball(side, b, state.ball) * u;
   double slip = slip_.heading[a] * (1.0 - u) + slip_.heading[b] * u;
-  if (!hold_feet_) {
-    Leg& leg = legs_[f];
-    const double dt = 1.0 / score_.rate_hz, x = leg.place[0].step(dt, random_), y = leg.place[1].step(dt, random_);
-    ball += Vec3(x, y, 0);
-    slip += leg.turn[0].step(dt, random_);
+  if (legs_) {
+    auto& [x, y, turn] = (*legs_)[f];
+    const double dt = 1.0 / score_.rate_hz;
+    ball.x() += x.step(dt, random_);
+    ball.y() += y.step(dt, random_);
+    slip += turn.step(dt, random_);
   }
   out[foot].q = (about_z(slip) * truth[foot].q).normalized();
   out[foot + 1].q = (about_z(slip) * truth[foot + 1].q).normalized();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "tools/sim/drift.hpp"
 #include "tools/sim/performer.hpp"
@@ -30,11 +31,8 @@ class Suit {
     std::vector<Wander> slow;    ///< wrist, 3 axes, m
     MagneticPull pull;
   };
-  /// Unrest of a foot that is not held.
-  struct Leg {
-    std::vector<Wander> place;  ///< x and y, m
-    std::vector<Wander> turn;   ///< one, rad
-  };
+  /// Unrest of a foot that is not held: x and y (m) and turn (rad).
+  using Leg = std::array<Wander, 3>;
   Leg make_leg(Random& random) const;
   Arm make_arm(Random& random) const;
   void report_trunk(std::size_t i, const Pose23& truth, Pose23& out);
@@ -54,8 +52,7 @@ class Suit {
   std::array<Wander, 2> tilt_;
   Quat tilt_now_ = Quat::Identity();
   std::array<Arm, 2> arms_;
-  bool hold_feet_;
-  std::array<Leg, 2> legs_;
+  std::optional<std::array<Leg, 2>> legs_;  ///< none: standing feet are held
 };
 
 }  // namespace kinemap::sim

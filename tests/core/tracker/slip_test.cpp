@@ -15,26 +15,21 @@ constexpr double kRate = 120.0;
 
 /// A pelvis over two feet, and where the suit thinks that all of it is.
 struct Stream {
-  std::function<Pose(double)> pelvis = [](double) { return level(0.0, 0.0, 0.95, 0.0); };
+  std::function<Pose(double)> pelvis = [](double) { return level_pose({0.0, 0.0, 0.95}, 0.0); };
   std::function<Pose(std::size_t side, double t)> foot = [](std::size_t side, double) {
-    return level(0.0, side == 0 ? 0.1 : -0.1, 0.08, 0.0);
+    return level_pose({0.0, side == 0 ? 0.1 : -0.1, 0.08}, 0.0);
   };
   std::function<Pose(double t)> slip = [](double) { return Pose{}; };  ///< T_odom_true
   bool held = false;                                                   ///< the suit does not let feet slip
 
-  static Pose level(double x, double y, double z, double heading) {
-    return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()))};
-  }
   [[nodiscard]] SuitFrame at(double t) const {
-    constexpr std::array<Segment, 2> kFoot{Segment::LeftFoot, Segment::RightFoot};
-    constexpr std::array<Segment, 2> kToe{Segment::LeftToe, Segment::RightToe};
     SuitFrame frame;
     frame.time_s = t;
     frame[Segment::Pelvis] = slip(t) * pelvis(t);
     for (std::size_t i = 0; i < 2; ++i) {
       const Pose ankle = held ? foot(i, t) : slip(t) * foot(i, t);
       frame[kFoot[i]] = ankle;
-      frame[kToe[i]] = ankle * level(0.15, 0.0, -0.06, 0.0);
+      frame[kToe[i]] = ankle * level_pose({0.15, 0.0, -0.06}, 0.0);
     }
     return frame;
   }
@@ -57,13 +52,14 @@ std::optional<Slip> heard(const Stream& stream, double begin_s, double end_s, do
 /// Stands for 6 s, then walks along x at 1 m/s, each foot 60 % of the time on the floor.
 Stream walk() {
   Stream stream;
-  stream.pelvis = [](double t) { return Stream::level(std::max(0.0, t - 6.0), 0.0, 0.95, 0.0); };
+  stream.pelvis = [](double t) { return level_pose({std::max(0.0, t - 6.0), 0.0, 0.95}, 0.0); };
   stream.foot = [](std::size_t foot, double t) {
     const double steps = std::max(0.0, t - 6.0) / 1.2 + (foot == 0 ? 0.0 : 0.5), n = std::floor(steps),
                  phase = steps - n;
     const double swing = std::clamp((phase - 0.6) / 0.4, 0.0, 1.0), ahead = 1.2 * (0.5 - 0.5 * std::cos(swing * M_PI));
-    return Stream::level(1.2 * (n - (foot == 0 ? 0.0 : 0.5)) + 0.3 + ahead, foot == 0 ? 0.1 : -0.1,
-                         0.08 + 0.15 * std::sin(swing * M_PI), 0.0);
+    return level_pose({1.2 * (n - (foot == 0 ? 0.0 : 0.5)) + 0.3 + ahead, foot == 0 ? 0.1 : -0.1,
+                       0.08 + 0.15 * std::sin(swing * M_PI)},
+                      0.0);
   };
   return stream;
 }
@@ -71,7 +67,7 @@ Stream walk() {
 TEST(Slip, StandingFeetTellHowFarTheSuitTurnsByItself) {
   for (const double rate : {60.0, 120.0, 240.0}) {
     Stream stream;
-    stream.slip = [](double t) { return Stream::level(0.0, 0.0, 0.0, kDegree * t); };
+    stream.slip = [](double t) { return level_pose({0.0, 0.0, 0.0}, kDegree * t); };
     const auto slip = heard(stream, 10.0, 20.0, rate);
     ASSERT_TRUE(slip) << rate;
     EXPECT_NEAR(slip->turn_rad, -10.0 * kDegree, 0.1 * kDegree) << rate;
@@ -83,7 +79,7 @@ TEST(Slip, StandingFeetTellHowFarTheSuitTurnsByItself) {
 
 TEST(Slip, StandingFeetTellHowFarTheSuitSlidesByItself) {
   Stream stream;
-  stream.slip = [](double t) { return Stream::level(0.02 * t, -0.01 * t, 0.0, 0.0); };
+  stream.slip = [](double t) { return level_pose({0.02 * t, -0.01 * t, 0.0}, 0.0); };
   const auto slip = heard(stream, 10.0, 20.0);
   ASSERT_TRUE(slip);
   EXPECT_NEAR(slip->way_m.x(), -0.2, 0.005);
@@ -93,10 +89,8 @@ TEST(Slip, StandingFeetTellHowFarTheSuitSlidesByItself) {
 
 TEST(Slip, WhatTheBodyDoesOverItsFeetIsNoSlip) {
   Stream stream;
-  stream.pelvis = [](double t) {
-    return Stream::level(0.1 * std::sin(t), 0.05 * std::cos(t), 0.95, 0.3 * std::sin(t));
-  };
-  stream.slip = [](double t) { return Stream::level(0.0, 0.0, 0.0, kDegree * t); };
+  stream.pelvis = [](double t) { return level_pose({0.1 * std::sin(t), 0.05 * std::cos(t), 0.95}, 0.3 * std::sin(t)); };
+  stream.slip = [](double t) { return level_pose({0.0, 0.0, 0.0}, kDegree * t); };
   const auto slip = heard(stream, 10.0, 20.0);
   ASSERT_TRUE(slip);
   EXPECT_NEAR(slip->turn_rad, -10.0 * kDegree, 0.1 * kDegree);
@@ -105,7 +99,7 @@ TEST(Slip, WhatTheBodyDoesOverItsFeetIsNoSlip) {
 TEST(Slip, OnTheWayEachFootTellsWhileItStands) {
   constexpr double kTurn = 0.1 * kDegree;  // a second, about the origin: far from there the feet slide as well
   Stream stream = walk();
-  stream.slip = [](double t) { return Stream::level(0.02 * t, 0.0, 0.0, kTurn * t); };
+  stream.slip = [](double t) { return level_pose({0.02 * t, 0.0, 0.0}, kTurn * t); };
   const auto slip = heard(stream, 12.0, 24.0);
   ASSERT_TRUE(slip);
   EXPECT_GT(slip->stood_s, 4.0);
@@ -116,7 +110,7 @@ TEST(Slip, OnTheWayEachFootTellsWhileItStands) {
 TEST(Slip, ASuitThatHoldsStandingFeetIsNotHeard) {
   for (Stream stream : {Stream{}, walk()}) {
     stream.held = true;
-    stream.slip = [](double t) { return Stream::level(0.01 * t, 0.0, 0.0, kDegree * t); };
+    stream.slip = [](double t) { return level_pose({0.01 * t, 0.0, 0.0}, kDegree * t); };
     EXPECT_FALSE(heard(stream, 10.0, 30.0));
   }
 }
@@ -125,11 +119,11 @@ TEST(Slip, ASuitThatDoesNotSlipIsNotHeard) { EXPECT_FALSE(heard(walk(), 10.0, 30
 
 TEST(Slip, AFootThatTurnsIsNotHeard) {
   Stream stream;
-  stream.slip = [](double t) { return Stream::level(0.0, 0.0, 0.0, kDegree * t); };
+  stream.slip = [](double t) { return level_pose({0.0, 0.0, 0.0}, kDegree * t); };
   stream.foot = [](std::size_t foot,
                    double t) {  // from 10 s on both feet step round to another heading, and stay there
     const double heading = std::clamp(t - 10.0, 0.0, 1.0) * 60.0 * kDegree;
-    return Stream::level(0.0, foot == 0 ? 0.1 : -0.1, 0.08, heading);
+    return level_pose({0.0, foot == 0 ? 0.1 : -0.1, 0.08}, heading);
   };
   const auto slip = heard(stream, 10.0, 20.0);
   ASSERT_TRUE(slip);
@@ -139,9 +133,9 @@ TEST(Slip, AFootThatTurnsIsNotHeard) {
 
 TEST(Slip, OneFootThatTurnsIsTold) {
   Stream stream;
-  stream.slip = [](double t) { return Stream::level(0.0, 0.0, 0.0, kDegree * t); };
+  stream.slip = [](double t) { return level_pose({0.0, 0.0, 0.0}, kDegree * t); };
   stream.foot = [](std::size_t foot, double t) {
-    return Stream::level(0.0, foot == 0 ? 0.1 : -0.1, 0.08, foot == 0 ? 0.0 : 3.0 * kDegree * std::max(0.0, t - 10.0));
+    return level_pose({0.0, foot == 0 ? 0.1 : -0.1, 0.08}, foot == 0 ? 0.0 : 3.0 * kDegree * std::max(0.0, t - 10.0));
   };
   const auto slip = heard(stream, 10.0, 12.0);
   ASSERT_TRUE(slip);
@@ -150,7 +144,7 @@ TEST(Slip, OneFootThatTurnsIsTold) {
 
 TEST(Slip, ABreakIsNoSlip) {
   Stream stream;
-  stream.slip = [](double t) { return Stream::level(t > 15.0 ? 3.0 : 0.0, 0.0, 0.0, kDegree * t); };
+  stream.slip = [](double t) { return level_pose({t > 15.0 ? 3.0 : 0.0, 0.0, 0.0}, kDegree * t); };
   SlipFold fold{{}};
   std::optional<Slip> slip;
   for (int i = 0; i <= 20 * kRate; ++i) {

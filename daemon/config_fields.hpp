@@ -267,6 +267,7 @@ void fields(V& v, MapperConfig::Association& c) {
   v.number("screen_density_per_m2", c.screen_density_per_m2, Range{"1/m²", 0.0001, 100});
   v.number("seat_density_per_m2", c.seat_density_per_m2, Range{"1/m²", 0.0001, 100});
   v.number("look_alike_share", c.look_alike_share, Range{"1", 0, 1});
+  v.number("neighbour_share", c.neighbour_share, Range{"1", 0, 1});
   v.number("min_evidence", c.min_evidence, Range{"1", -1000, 1000});
   v.number("joint_evidence", c.joint_evidence, Range{"1", -1000, 1000});
   v.number("free_space_most", c.free_space_most, Range{"1", 0, 1000});

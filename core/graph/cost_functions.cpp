@@ -37,7 +37,9 @@ int rows_of(const ContactFactor& f, LandmarkKind kind) {
   return 1 + (f.edge != Edge::None ? 1 : 0) + (f.corner != Edge::None ? 1 : 0);
 }
 
-BetweenCost::BetweenCost(const BetweenFactor& factor) : factor_(factor) {
+BetweenCost::BetweenCost(const BetweenFactor& factor, const NoiseScales& noise)
+    : factor_(factor), sqrt_information_(factor.sqrt_information) {
+  sqrt_information_.leftCols<3>() /= noise.way;
   set_num_residuals(robust(factor.loss) ? 7 : 6);
   *mutable_parameter_block_sizes() = {7, 7};
 }
@@ -47,7 +49,7 @@ bool BetweenCost::Evaluate(double const* const* x, double* residuals, double** j
   Matrix6 d[2];
   const Vector6 e = between_error(pose_from(x[0]), pose_from(x[1]), factor_.T_i_j, out[0] != nullptr ? &d[0] : nullptr,
                                   out[1] != nullptr ? &d[1] : nullptr);
-  const Vector6 r = factor_.sqrt_information * e;
+  const Vector6 r = sqrt_information_ * e;
   double slack = 0.0;
   const double scale = robustify(factor_.loss, r.squaredNorm(), slack);
   Eigen::Map<Vector6>{residuals} = scale * r;
@@ -56,7 +58,7 @@ bool BetweenCost::Evaluate(double const* const* x, double* residuals, double** j
     if (out[k] == nullptr) continue;
     PoseRows rows(out[k], num_residuals(), 7);
     rows.setZero();
-    rows.topLeftCorner<6, 6>().noalias() = (scale * factor_.sqrt_information) * d[k];
+    rows.topLeftCorner<6, 6>().noalias() = (scale * sqrt_information_) * d[k];
   }
   return true;
 }

@@ -20,11 +20,12 @@ int rows_of(const ContactFactor& f, LandmarkKind kind);
 /// Between factor (poses i, j).
 class BetweenCost final : public ceres::CostFunction {
  public:
-  explicit BetweenCost(const BetweenFactor& factor);
+  BetweenCost(const BetweenFactor& factor, const NoiseScales& noise);
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
  private:
   const BetweenFactor& factor_;
+  Matrix6 sqrt_information_;
 };
 
 /// Compass factor (poses i, j, north), or (pose j, north) when i = j.

@@ -185,11 +185,11 @@ struct FoldedFactor {
   double weighted_squares = 0.0;     ///< Σ weighted_square() of the contacts
 };
 
-/// Errors of some kinds over what their factors' sigmas say, as core/graph/variance_components.hpp finds them: the
-/// sigmas are multiplied by it.
+/// Errors of some kinds over what their factors' sigmas say: the sigmas are multiplied by it.
 struct NoiseScales {
   double heading = 1.0;  ///< compasses, drifts and the priors of scalars
   double contact = 1.0;
+  double way = 1.0;  ///< translations of between factors
 };
 
 struct Graph {

@@ -86,7 +86,7 @@ ResidualBlocks::ResidualBlocks(const Graph& graph, Values& values, std::size_t f
 
 void ResidualBlocks::add_pose_factors() {
   for (const BetweenFactor& f : graph_.between) {
-    add(between_costs_.emplace_back(f), {static_cast<VariableId>(f.i), static_cast<VariableId>(f.j)});
+    add(between_costs_.emplace_back(f, graph_.noise), {static_cast<VariableId>(f.i), static_cast<VariableId>(f.j)});
   }
   gravity_ = index_by_pose(graph_.gravity, graph_.poses.size());
   floors_ = index_by_pose(graph_.floors, graph_.poses.size());

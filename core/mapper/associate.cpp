@@ -28,6 +28,8 @@ constexpr double kTableHeights = 0.3, kTableSizes = 1.0;
 constexpr double kScreenHeights = 0.8, kScreenSizes = 0.7;
 constexpr double kSeatHeights = 0.2;
 constexpr double kSeatWidth = 0.4;  // m: seats nearer than that are one
+constexpr double kSeatsNear = 1.2;  // m: seats about one …
+constexpr double kLikeThose = 0.3;  // … of which so many times as many again are expected there
 constexpr double kHalfPi = std::numbers::pi / 2.0;
 
 double squared(double x) { return x * x; }
@@ -41,6 +43,7 @@ struct Difference {
   double density = 0.0;   ///< of objects of the kind, per m or m² (`places`)
   double variety = 1.0;   ///< probability density of the other numbers among objects of the kind
   int quarter_turns = 0;
+  std::vector<Eigen::Vector2d> neighbours;  ///< differences in place of one like it that stands flush beside it, m
 };
 
 Difference wall_difference(const MapState& state, std::size_t a, const MapperConfig::Association& config) {
@@ -81,11 +84,18 @@ Difference table_difference(const Landmark& a, const Landmark& b, const MapperCo
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, config.heading_sigma_rad,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
   d.density = config.table_density_per_m2;
+  const bool swapped = turns % 2 != 0;
+  const double u = 0.5 * (a.x[swapped ? 5 : 4] + b.x[4]), v = 0.5 * (a.x[swapped ? 4 : 5] + b.x[5]);
+  const Eigen::Rotation2Dd turn(b.x[3]);
+  for (const double side : {-1.0, 1.0}) {
+    d.neighbours.emplace_back(turn * Eigen::Vector2d(side * u, 0.0));
+    d.neighbours.emplace_back(turn * Eigen::Vector2d(0.0, side * v));
+  }
   d.variety = 1.0 / (kTableHeights * kHalfPi * kTableSizes);
   return d;
 }
 
-Difference screen_difference(const Landmark& b, const MapperConfig::Association& config) {
+Difference screen_difference(const Landmark& a, const Landmark& b, const MapperConfig::Association& config) {
   Difference d;
   d.of = [](const Landmark& x, const Landmark& y) {
     Eigen::VectorXd e(6);
@@ -98,18 +108,33 @@ Difference screen_difference(const Landmark& b, const MapperConfig::Association&
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, heading,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
   d.density = config.screen_density_per_m2;
+  for (const double side : {-1.0, 1.0})
+    d.neighbours.emplace_back(Eigen::Rotation2Dd(b.x[3]) * Eigen::Vector2d(0.0, side * 0.5 * (a.x[4] + b.x[4])));
   d.variety = 1.0 / (kScreenHeights * 4.0 * kHalfPi * kScreenSizes);
   return d;
 }
 
-Difference seat_difference(const MapperConfig::Association& config) {
+/// Seats come in rows and round tables: about known ones more are to be expected than elsewhere.
+double seat_density(const MapState& state, std::size_t a, std::size_t b, const MapperConfig::Association& config) {
+  const auto& landmarks = state.graph.landmarks;
+  int near = 0;
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    const Landmark& other = landmarks[k];
+    if (k == a || k == b || !other.active || other.kind != LandmarkKind::Seat || state.landmarks[k].id == 0) continue;
+    if (std::hypot(other.x[0] - landmarks[b].x[0], other.x[1] - landmarks[b].x[1]) < kSeatsNear) ++near;
+  }
+  return config.seat_density_per_m2 + kLikeThose * near / (std::numbers::pi * squared(kSeatsNear));
+}
+
+Difference seat_difference(const MapState& state, std::size_t a, std::size_t b,
+                           const MapperConfig::Association& config) {
   Difference d;
   d.of = [](const Landmark& x, const Landmark& y) {
     return Eigen::VectorXd(
         Eigen::Vector4d(x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3])));
   };
   d.noise = Eigen::Vector4d(config.position_sigma_m, config.position_sigma_m, 0.5 * config.position_sigma_m, 0.2);
-  d.density = config.seat_density_per_m2;
+  d.density = seat_density(state, a, b, config);
   d.variety = 1.0 / (kSeatHeights * 4.0 * kHalfPi);
   return d;
 }
@@ -122,9 +147,9 @@ Difference difference(const MapState& state, std::size_t a, std::size_t b, const
     case LandmarkKind::Table:
       return table_difference(landmarks[a], landmarks[b], config);
     case LandmarkKind::Screen:
-      return screen_difference(landmarks[b], config);
+      return screen_difference(landmarks[a], landmarks[b], config);
     case LandmarkKind::Seat:
-      return seat_difference(config);
+      return seat_difference(state, a, b, config);
     case LandmarkKind::Direction:
       break;  // there is one alone
   }
@@ -154,10 +179,16 @@ double twice_log_density(const Eigen::VectorXd& e, const Eigen::MatrixXd& covari
 }
 
 /// 2 ln of the odds that a difference `e` with covariance `s` is between two visits to one object.
-double evidence(const Difference& d, const Eigen::VectorXd& e, const Eigen::MatrixXd& s, double look_alike_share) {
+double evidence(const Difference& d, const Eigen::VectorXd& e, const Eigen::MatrixXd& s,
+                const MapperConfig::Association& config) {
   const Eigen::Index likeness = e.size() - d.places;
   const double alike = std::exp(0.5 * twice_log_density(e.tail(likeness), s.bottomRightCorner(likeness, likeness)));
-  const double another = d.density * (look_alike_share * alike + (1.0 - look_alike_share) * d.variety);
+  double another = d.density * (config.look_alike_share * alike + (1.0 - config.look_alike_share) * d.variety);
+  for (const Eigen::Vector2d& neighbour : d.neighbours) {
+    Eigen::VectorXd from_there = e;
+    from_there.head<2>() -= neighbour;
+    another += config.neighbour_share * std::exp(0.5 * twice_log_density(from_there, s));
+  }
   return twice_log_density(e, s) - 2.0 * std::log(another);
 }
 
@@ -328,10 +359,9 @@ std::vector<Candidate> candidates(const MapState& state, std::size_t newcomer, c
     s.diagonal() += d.noise.cwiseAbs2();
     doubted.diagonal() += std::max(1.0, squared(config.doubt)) * d.noise.cwiseAbs2();
     Candidate candidate{other, d.quarter_turns, e.dot(doubted.ldlt().solve(e)), static_cast<int>(e.size()),
-                        evidence(d, e, doubted, config.look_alike_share)};
+                        evidence(d, e, doubted, config)};
     // Two cannot stand in one place: when they seem to, that is no sign of a drift as wide as the doubt.
-    if (in_one_place(a, b))
-      candidate.evidence = std::max(candidate.evidence, evidence(d, e, s, config.look_alike_share));
+    if (in_one_place(a, b)) candidate.evidence = std::max(candidate.evidence, evidence(d, e, s, config));
     if (a.kind == LandmarkKind::Wall) {
       const auto along = along_wall_distance(state, marginals, newcomer, other, config.doubt);
       if (!along) continue;

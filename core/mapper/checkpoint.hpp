@@ -12,7 +12,7 @@
 /// and counts kCheckpointVersion up.
 namespace kinemap {
 
-constexpr std::uint32_t kCheckpointVersion = 4;
+constexpr std::uint32_t kCheckpointVersion = 5;
 
 inline void fields(Archive& a, Pose& x) { a(x.p, x.q); }
 
@@ -40,7 +40,7 @@ inline void fields(Archive& a, LandmarkPrior& x) { a(x.landmark, x.index, x.mean
 inline void fields(Archive& a, FoldedFactor& x) {
   a(x.landmark, x.touch, x.at, x.p_hand, x.quarter_turns, x.sqrt_information, x.residual, x.rest, x.weighted_squares);
 }
-inline void fields(Archive& a, NoiseScales& x) { a(x.heading, x.contact); }
+inline void fields(Archive& a, NoiseScales& x) { a(x.heading, x.contact, x.way); }
 inline void fields(Archive& a, Graph& x) {
   a(x.noise, x.poses, x.first_free_pose, x.landmarks, x.touch_points, x.scalars, x.compasses, x.drifts, x.scalar_priors,
     x.between, x.gravity, x.floors, x.priors, x.contacts, x.seats, x.parallels, x.landmark_priors, x.folded);

@@ -161,9 +161,8 @@ bool LoopCloser::align(MapState& state) const {
 }
 
 void LoopCloser::learn(const MapState& state) {
-  if (state.summary.loop_closures != closures_heard_) heading_noise_ = heading_noise(state.graph);
-  closures_heard_ = state.summary.loop_closures;
-  config_.association.doubt = expected_doubt_ * std::min(1.0, heading_noise_);
+  config_.association.doubt =
+      std::max(1.0, std::min(expected_doubt_, expected_doubt_ * most_heading_noise(state.graph)));
 }
 
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {

@@ -44,7 +44,7 @@ class LoopCloser {
   /// Its members, for Mapper::checkpoint().
   template <class A>
   void fields(A& a) {
-    a(contradicted_, next_id_, heading_noise_, closures_heard_);
+    a(contradicted_, next_id_);
   }
 
  private:
@@ -71,7 +71,7 @@ class LoopCloser {
 
   [[nodiscard]] bool is_contradicted(std::size_t a, std::size_t b) const;
 
-  /// The doubt about the graph's covariance falls as loops tell that this suit errs less than expected.
+  /// The doubt about the graph's covariance falls as contacts and loops tell that this suit errs less than expected.
   void learn(const MapState& state);
 
   MapperConfig config_;  ///< association.doubt as learn() has it
@@ -79,8 +79,6 @@ class LoopCloser {
   std::vector<std::array<std::size_t, 2>>
       contradicted_;  ///< pairs that an optimum spoke against since the last closure
   std::uint32_t next_id_ = 1;
-  double heading_noise_ = 1.0;      ///< of this suit over the expected one …
-  std::size_t closures_heard_ = 0;  ///< … after so many loop closures
 };
 
 }  // namespace kinemap

@@ -87,6 +87,7 @@ struct MapperConfig {
     double screen_density_per_m2 = 0.08;
     double seat_density_per_m2 = 0.3;
     double look_alike_share = 0.5;  ///< part of them that also have the same size, height and heading
+    double neighbour_share = 0.2;   ///< tables and screens: on each side one like it stands flush beside it so often
     double min_evidence = 0.0;      ///< 2 ln of the odds that it is the known one, to close a loop
     double joint_evidence = 0.0;    ///< less by itself: not tried for the sake of others that it
                                     ///< bears out

@@ -42,7 +42,8 @@ class Mapper::Impl {
   bool add(const KeyPose& key_pose) {
     odometry_.add(key_pose, state_.graph);
     if (const auto& way = state_.graph.between; !way.empty())
-      pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back().T_i_j, step_sigma(state_.graph, way.back()));
+      pelvis_covariance_.add(state_.graph.poses[way.back().i], way.back().T_i_j,
+                             step_sigma(state_.graph, way.back(), noise_));
     time_s_ = key_pose.time_s;
     if (key_pose.id + 1 < snapshot_->graph.key_poses + kTrajectoryLag) return false;
     publish(std::make_shared<MapSnapshot>(*snapshot_));  // the objects are as they were
@@ -202,8 +203,8 @@ class Mapper::Impl {
     const auto walls = cut_walls(state_, config_.walls);
     const graph::NoiseScales expected = std::exchange(state_.graph.noise, noise_);  // of this session, to be published
     const auto marginals = graph::Marginals::compute(state_.graph);
-    state_.graph.noise = expected;
     map->objects = map_objects(state_, walls, marginals ? &*marginals : nullptr, config_);
+    state_.graph.noise = expected;
     map->rooms = find_rooms(state_, walls, config_.walls);
     map->doorways = find_doorways(state_, walls, map->rooms);
     map->unresolved = unresolved_;
@@ -234,7 +235,8 @@ class Mapper::Impl {
       map->trajectory.push_back(trajectory_pose(k));
     if (!key_poses.empty()) map->T_map_odom = state_.graph.poses.back() * key_poses.back().T_odom_pelvis.inverse();
     if (!key_poses.empty())
-      map->pelvis_covariance = pelvis_covariance_.published(state_.graph.poses.back(), state_.graph.poses.front().p);
+      map->pelvis_covariance =
+          pelvis_covariance_.published(state_.graph.poses.back(), state_.graph.poses.front().p, noise_.way);
     map->graph = state_.summary;
     map->graph.key_poses = key_poses.empty() ? 0 : key_poses.back().id + std::size_t{1};
     map->graph.landmarks = map->objects.size();

@@ -182,13 +182,13 @@ void Odometry::add_floor(const KeyPose& key_pose, graph::Graph& graph) {
   pose.p.z() += level_z_ - (pose * floor.p_i).z();
 }
 
-StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between) {
+StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between, const graph::NoiseScales& noise) {
   const graph::Matrix6& information = between.sqrt_information;  // diagonal
   const auto compass = std::lower_bound(graph.compasses.begin(), graph.compasses.end(), between.j,
                                         [](const graph::CompassFactor& f, std::size_t pose) { return f.j < pose; });
-  const double compass_information = compass->i != compass->j ? 1.0 / compass->sigma_rad : 0.0;
+  const double compass_information = compass->i != compass->j ? 1.0 / (noise.heading * compass->sigma_rad) : 0.0;
   const double heading = 1.0 / std::hypot(compass_information, information(5, 5));
-  return {1.0 / information(0, 0), 1.0 / information(2, 2), 1.0 / information(3, 3), heading};
+  return {noise.way / information(0, 0), noise.way / information(2, 2), 1.0 / information(3, 3), heading};
 }
 
 }  // namespace kinemap

@@ -65,6 +65,7 @@ Pose odometry_step(const KeyPose& from, const KeyPose& to, const MapperConfig::O
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
 
 /// The noise of a step of the odometry and the compass, as the graph has it.
-StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between);
+StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between,
+                     const graph::NoiseScales& noise = {});
 
 }  // namespace kinemap

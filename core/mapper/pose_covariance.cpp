@@ -40,10 +40,10 @@ void PoseCovariance::add(const Pose& T_map_i, const Pose& T_i_j, const StepSigma
   covariance_ = carry * covariance_ * carry.transpose() + noise;
 }
 
-Matrix6 PoseCovariance::published(const Pose& T_map_pelvis, const Eigen::Vector3d& p_first) const {
+Matrix6 PoseCovariance::published(const Pose& T_map_pelvis, const Eigen::Vector3d& p_first, double way) const {
   Matrix6 out = covariance_;
-  const Eigen::Vector2d way = config_.scale_sigma * (T_map_pelvis.p - p_first).head<2>();
-  out.topLeftCorner<2, 2>() += way * way.transpose();
+  const Eigen::Vector2d scaled = way * config_.scale_sigma * (T_map_pelvis.p - p_first).head<2>();
+  out.topLeftCorner<2, 2>() += scaled * scaled.transpose();
   return 0.5 * (out + out.transpose());  // symmetric to the bit
 }
 

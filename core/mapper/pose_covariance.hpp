@@ -20,8 +20,8 @@ class PoseCovariance {
   void add(const Pose& T_map_i, const Pose& T_i_j, const StepSigma& step);
 
   /// As MapSnapshot::pelvis_covariance has it, with the scale of the way, which the graph does not know; `p_first` is
-  /// where the way began.
-  [[nodiscard]] graph::Matrix6 published(const Pose& T_map_pelvis, const Eigen::Vector3d& p_first) const;
+  /// where the way began, `way` as in NoiseScales.
+  [[nodiscard]] graph::Matrix6 published(const Pose& T_map_pelvis, const Eigen::Vector3d& p_first, double way) const;
 
   /// Its members, for Mapper::checkpoint().
   template <class A>

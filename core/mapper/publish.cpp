@@ -44,8 +44,8 @@ Eigen::MatrixXd covariance_of(const graph::Marginals& marginals, std::span<const
 
 /// What the scale of the way, which no closure sees, adds to the sigma of something so far from the first pose, per
 /// axis.
-double with_scale(double sigma, double distance, const MapperConfig::Odometry& config) {
-  return std::sqrt(sigma * sigma + 0.5 * std::pow(config.scale_sigma * distance, 2));
+double with_scale(double sigma, double distance, double scale_sigma) {
+  return std::sqrt(sigma * sigma + 0.5 * std::pow(scale_sigma * distance, 2));
 }
 
 /// Position, heading and the two sizes of a table, screen or seat; `heading` is the index of the heading among the
@@ -116,7 +116,7 @@ double meeting(const Landmark& a, const Landmark& b) {
 
 /// The length of a wall depends on the walls that it meets too; an end that meets none adds what is not known of it.
 void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls, const FiniteWall& wall,
-                    const graph::Marginals& marginals, const MapperConfig::Odometry& config, MapObject& object) {
+                    const graph::Marginals& marginals, double scale_sigma, MapObject& object) {
   std::vector<std::size_t> involved{wall.landmark};
   const auto meets = [&](const WallEnd& end) -> std::optional<std::size_t> {
     if (end.kind != EndKind::Corner) return std::nullopt;
@@ -146,7 +146,7 @@ void set_wall_sigma(const MapState& state, const std::vector<FiniteWall>& walls,
   const Eigen::MatrixXd covariance = covariance_of(marginals, involved);
   double variance = (j * covariance * j.transpose())(0, 0);
   for (const WallEnd& end : {wall.tail, wall.head}) variance += end.sigma_m * end.sigma_m;
-  variance += std::pow(config.scale_sigma * wall.length(), 2);
+  variance += std::pow(scale_sigma * wall.length(), 2);
   object.sigma.size_m = {std::sqrt(std::max(0.0, variance)), 0.0};
   object.sigma.heading_rad = sigma_of(covariance, 0);
   object.sigma.position_m = sigma_of(covariance, 1);
@@ -169,6 +169,7 @@ void add_visits(const MapState& state, std::size_t landmark, MapObject& object) 
 
 std::vector<MapObject> map_objects(const MapState& state, const std::vector<FiniteWall>& walls,
                                    const graph::Marginals* marginals, const MapperConfig& config) {
+  const double scale_sigma = config.odometry.scale_sigma * state.graph.noise.way;
   std::vector<MapObject> objects;
   for (std::size_t k = 0; k < state.graph.landmarks.size(); ++k) {
     const Landmark& landmark = state.graph.landmarks[k];
@@ -190,7 +191,7 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
         add_record(state.landmarks[other], object);
         add_visits(state, other, object);
       }
-      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, config.odometry, object);
+      if (marginals) set_wall_sigma(state, walls, *wall, *marginals, scale_sigma, object);
     } else {
       if (landmark.kind == LandmarkKind::Table) describe_table(landmark, object);
       if (landmark.kind == LandmarkKind::Screen) describe_screen(landmark, object);
@@ -201,7 +202,7 @@ std::vector<MapObject> map_objects(const MapState& state, const std::vector<Fini
               [](const Visit& a, const Visit& b) { return a.begin_s < b.begin_s; });
     if (marginals) {
       const double away = (object.pose.p - state.graph.poses.front().p).head<2>().norm();
-      object.sigma.position_m = with_scale(object.sigma.position_m, away, config.odometry);
+      object.sigma.position_m = with_scale(object.sigma.position_m, away, scale_sigma);
     }
     objects.push_back(std::move(object));
   }

@@ -107,6 +107,75 @@ TEST(Candidates, TwoInOnePlaceAreOne) {
   }
 }
 
+/// Things of one kind, of which the last is a newcomer whose place is known to 0.2 m.
+MapState seen_again(graph::LandmarkKind kind, const std::vector<Eigen::Vector2d>& places) {
+  MapState state;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const bool newcomer = k + 1 == places.size();
+    graph::Landmark landmark;
+    landmark.kind = kind;
+    landmark.x = {places[k].x(), places[k].y(), 0.72, 0.0, 1.6, 0.8, 0.0};
+    state.graph.landmarks.push_back(landmark);
+    for (int i = 0; i < graph::dimension(kind); ++i)
+      state.graph.landmark_priors.push_back(
+          {k, i, landmark.x[static_cast<std::size_t>(i)], newcomer && i < 2 ? 0.2 : 0.02});
+    state.landmarks.push_back({newcomer ? 0 : static_cast<std::uint32_t>(k + 1), 1, 0.0, 0.0, 0.0});
+  }
+  return state;
+}
+
+/// Evidence that the last one is the first one.
+double evidence_of(const MapState& state, const MapperConfig::Association& config) {
+  const auto marginals = graph::Marginals::compute(state.graph);
+  if (!marginals) throw std::runtime_error("no marginals");
+  for (const Candidate& c : candidates(state, state.graph.landmarks.size() - 1, *marginals, config))
+    if (c.landmark == 0) return c.evidence;
+  return -HUGE_VAL;
+}
+
+TEST(Candidates, DesksStandSideBySide) {
+  MapperConfig::Association config;
+  config.doubt = 1.5;
+  for (const auto& [place, flush] : {std::pair{Eigen::Vector2d(0.0, 0.76), true},
+                                     {Eigen::Vector2d(1.5, 0.0), true},
+                                     {Eigen::Vector2d(0.1, -0.1), false}}) {
+    const MapState state = seen_again(graph::LandmarkKind::Table, {{0.0, 0.0}, place});
+    config.neighbour_share = 0.0;
+    const double anywhere = evidence_of(state, config);
+    config.neighbour_share = 0.2;
+    const double flushly = evidence_of(state, config);
+    EXPECT_EQ(flushly > 0.0, !flush) << place.transpose() << ": " << flushly;
+    EXPECT_GT(anywhere - flushly, flush ? 1.0 : 0.0);
+    EXPECT_LT(anywhere - flushly, flush ? 100.0 : 0.5);
+  }
+}
+
+TEST(Candidates, ScreensStandSideBySide) {
+  MapperConfig::Association config;
+  config.doubt = 1.5;
+  const MapState beside = seen_again(graph::LandmarkKind::Screen, {{0.0, 0.0}, {0.0, 1.55}}),
+                 behind = seen_again(graph::LandmarkKind::Screen, {{0.0, 0.0}, {1.55, 0.0}});
+  const double beside_before = [&] {
+    config.neighbour_share = 0.0;
+    return evidence_of(beside, config);
+  }();
+  const double behind_before = evidence_of(behind, config);
+  config.neighbour_share = 0.2;
+  EXPECT_LT(evidence_of(beside, config), beside_before - 1.0);
+  EXPECT_GT(evidence_of(behind, config), behind_before - 0.1);
+}
+
+TEST(Candidates, WhereSeatsAreMoreSeatsAreToBeExpected) {
+  const MapperConfig::Association config;
+  const double alone = evidence_of(seen_again(graph::LandmarkKind::Seat, {{0.0, 0.0}, {0.3, 0.0}}), config),
+               in_a_row = evidence_of(
+                   seen_again(graph::LandmarkKind::Seat, {{0.0, 0.0}, {0.6, 0.0}, {-0.6, 0.0}, {0.3, 0.0}}), config),
+               far_from_others = evidence_of(
+                   seen_again(graph::LandmarkKind::Seat, {{0.0, 0.0}, {2.0, 0.0}, {-2.0, 0.0}, {0.3, 0.0}}), config);
+  EXPECT_LT(in_a_row, alone - 0.5);
+  EXPECT_NEAR(far_from_others, alone, 1e-6);
+}
+
 /// Two seats 2 m apart, a way of which little is known (0.8 m), and two seats again, so far from where the first ones
 /// are as `off` says.
 MapState seats_before_and_after_a_long_way(const std::array<double, 2>& off) {

@@ -86,7 +86,7 @@ TEST(AlignWalls, ADecisionIsTakenBackWhenTheWallIsKnownBetter) {
   state.graph.landmark_priors[4].sigma = 0.15;  // the third one's heading
   align(state);
   ASSERT_TRUE(aligned(state, 2));
-  state.graph.landmark_priors[4].sigma = 0.01;  // seen again, and it is oblique
+  state.graph.landmark_priors[4].sigma = 0.01;           // seen again, and it is oblique
   ASSERT_TRUE(graph::optimize(state.graph, {}).usable);  // decisions are taken at an optimum
   align(state);
   EXPECT_FALSE(aligned(state, 2));

@@ -42,8 +42,8 @@ TEST(PoseCovariance, CarriedOnByOdometryItIsTheGraphsMarginal) {
   for (const auto& between : graph.between)
     carried.add(graph.poses[between.i], between.T_i_j, step_sigma(graph, between));
 
-  const graph::Matrix6 a = expected.published(graph.poses.back(), graph.poses.back().p);
-  const graph::Matrix6 b = carried.published(graph.poses.back(), graph.poses.back().p);
+  const graph::Matrix6 a = expected.published(graph.poses.back(), graph.poses.back().p, 1.0);
+  const graph::Matrix6 b = carried.published(graph.poses.back(), graph.poses.back().p, 1.0);
   for (const int i : {0, 1, 5})
     for (const int j : {0, 1, 5}) EXPECT_NEAR(b(i, j), a(i, j), 0.05 * std::sqrt(a(i, i) * a(j, j))) << i << ' ' << j;
 }
@@ -56,10 +56,12 @@ TEST(PoseCovariance, IsGivenInTheMapsAxesWithTheScaleOfTheWay) {
   marginal(5, 5) = 0.01;
   const Pose facing_y = level_pose({0.0, 10.0, 1.0}, 0.5 * std::numbers::pi);
   covariance.set(facing_y, marginal);
-  const graph::Matrix6 out = covariance.published(facing_y, Eigen::Vector3d::Zero());
+  const graph::Matrix6 out = covariance.published(facing_y, Eigen::Vector3d::Zero(), 1.0);
   EXPECT_NEAR(out(0, 0), 0.0, 1e-12);
   EXPECT_NEAR(out(1, 1), 0.04 + std::pow(10.0 * config.scale_sigma, 2), 1e-12);
   EXPECT_NEAR(out(5, 5), 0.01, 1e-12);
+  const graph::Matrix6 better = covariance.published(facing_y, Eigen::Vector3d::Zero(), 0.5);
+  EXPECT_NEAR(better(1, 1), 0.04 + std::pow(10.0 * 0.5 * config.scale_sigma, 2), 1e-12);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ using graph::LandmarkKind;
 
 constexpr int kPullIterations = 3;
 constexpr int kReassignRounds = 2;
+constexpr double kLeastDoubt =
+    0.35;                       // of the expected one: the way and the hand err less unlike each other than headings
 constexpr double kAlike = 1.5;  // m by which two closures that bear each other out may move things differently
 
 /// Sets the loss of all factors on the newcomer's visits.
@@ -161,8 +163,7 @@ bool LoopCloser::align(MapState& state) const {
 }
 
 void LoopCloser::learn(const MapState& state) {
-  config_.association.doubt =
-      std::max(1.0, std::min(expected_doubt_, expected_doubt_ * most_heading_noise(state.graph)));
+  config_.association.doubt = expected_doubt_ * std::clamp(most_heading_noise(state.graph), kLeastDoubt, 1.0);
 }
 
 bool LoopCloser::resolve(MapState& state, std::size_t newcomer) {

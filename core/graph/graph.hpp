@@ -189,7 +189,7 @@ struct FoldedFactor {
 struct NoiseScales {
   double heading = 1.0;  ///< compasses, drifts and the priors of scalars
   double contact = 1.0;
-  double way = 1.0;  ///< translations of between factors
+  double way = 1.0;  ///< translations of between factors; of breaks too, whose sigmas are guesses anyway
 };
 
 struct Graph {

@@ -71,25 +71,24 @@ int quarter_turns(double heading_a, double heading_b) {
 
 Difference table_difference(const Landmark& a, const Landmark& b, const MapperConfig::Association& config) {
   const int turns = quarter_turns(a.x[3], b.x[3]);
+  // What of the newcomer lies along the known one's u and v.
+  const std::size_t u = turns % 2 == 0 ? 4 : 5, v = turns % 2 == 0 ? 5 : 4;
   Difference d;
   d.quarter_turns = turns;
-  d.of = [turns](const Landmark& x, const Landmark& y) {
+  d.of = [turns, u, v](const Landmark& x, const Landmark& y) {
     Eigen::VectorXd e(6);
-    const bool swapped = turns % 2 != 0;
     e << x.x[0] - y.x[0], x.x[1] - y.x[1], x.x[2] - y.x[2], wrap_angle(x.x[3] - y.x[3] - turns * kHalfPi),
-        x.x[swapped ? 5 : 4] - y.x[4], x.x[swapped ? 4 : 5] - y.x[5];
+        x.x[u] - y.x[4], x.x[v] - y.x[5];
     return e;
   };
   d.noise.resize(6);
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, config.heading_sigma_rad,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
   d.density = config.table_density_per_m2;
-  const bool swapped = turns % 2 != 0;
-  const double u = 0.5 * (a.x[swapped ? 5 : 4] + b.x[4]), v = 0.5 * (a.x[swapped ? 4 : 5] + b.x[5]);
   const Eigen::Rotation2Dd turn(b.x[3]);
-  for (const double side : {-1.0, 1.0}) {
-    d.neighbours.emplace_back(turn * Eigen::Vector2d(side * u, 0.0));
-    d.neighbours.emplace_back(turn * Eigen::Vector2d(0.0, side * v));
+  for (const double half : {-0.5, 0.5}) {
+    d.neighbours.emplace_back(turn * Eigen::Vector2d(half * (a.x[u] + b.x[4]), 0.0));
+    d.neighbours.emplace_back(turn * Eigen::Vector2d(0.0, half * (a.x[v] + b.x[5])));
   }
   d.variety = 1.0 / (kTableHeights * kHalfPi * kTableSizes);
   return d;
@@ -108,8 +107,8 @@ Difference screen_difference(const Landmark& a, const Landmark& b, const MapperC
   d.noise << config.position_sigma_m, config.position_sigma_m, config.position_sigma_m, heading,
       config.size_sigma_m + config.size_sigma_per_m * b.x[4], config.size_sigma_m + config.size_sigma_per_m * b.x[5];
   d.density = config.screen_density_per_m2;
-  for (const double side : {-1.0, 1.0})
-    d.neighbours.emplace_back(Eigen::Rotation2Dd(b.x[3]) * Eigen::Vector2d(0.0, side * 0.5 * (a.x[4] + b.x[4])));
+  for (const double half : {-0.5, 0.5})
+    d.neighbours.emplace_back(Eigen::Rotation2Dd(b.x[3]) * Eigen::Vector2d(0.0, half * (a.x[4] + b.x[4])));
   d.variety = 1.0 / (kScreenHeights * 4.0 * kHalfPi * kScreenSizes);
   return d;
 }

@@ -19,9 +19,8 @@ using graph::LandmarkKind;
 
 constexpr int kPullIterations = 3;
 constexpr int kReassignRounds = 2;
-constexpr double kLeastDoubt =
-    0.35;                       // of the expected one: the way and the hand err less unlike each other than headings
-constexpr double kAlike = 1.5;  // m by which two closures that bear each other out may move things differently
+constexpr double kLeastDoubt = 0.35;  // of the expected one: so sure of a suit nobody is
+constexpr double kAlike = 1.5;        // m by which two closures that bear each other out may move things differently
 
 /// Sets the loss of all factors on the newcomer's visits.
 void set_loss(MapState& state, const std::vector<std::size_t>& visits, graph::Loss contact, graph::Loss seat) {

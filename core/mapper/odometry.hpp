@@ -64,7 +64,7 @@ Pose odometry_step(const KeyPose& from, const KeyPose& to, const MapperConfig::O
 /// the heading it has something to say at a break only and where feet stood; else that is the compass' matter.
 graph::Matrix6 odometry_sqrt_information(const KeyPose& from, const KeyPose& to, const MapperConfig::Odometry& config);
 
-/// The noise of a step of the odometry and the compass, as the graph has it.
+/// The noise of a step of the odometry and the compass: as the graph has it, times `noise`.
 StepSigma step_sigma(const graph::Graph& graph, const graph::BetweenFactor& between,
                      const graph::NoiseScales& noise = {});
 

@@ -18,23 +18,22 @@ std::uint64_t signs(std::uint64_t row) {
   return row ^ (row >> 31);
 }
 
-/// Jᵀz for each probe z, and r² of the rows: with LLᵀ = JᵀJ the trace of J Σ Jᵀ is E‖L⁻¹Jᵀz‖².
+/// Jᵀz for each probe z, and r² of the rows: with LLᵀ = JᵀJ the trace of J Σ Jᵀ is E‖L⁻¹Jᵀz‖². All probes of a row side
+/// by side, so that what is done to one is done to all at once.
 class Probes {
  public:
-  explicit Probes(const Factorisation& system)
-      : system_(system), Jtz_(Eigen::MatrixXd::Zero(system.L().cols(), kProbes)) {}
+  explicit Probes(const Factorisation& system) : system_(system), Jtz_(Rows::Zero(system.L().cols(), kProbes)) {}
 
   void add(const ResidualBlock& block, const Linearised& linearised) {
     for (Eigen::Index row = 0; row < linearised.residuals().size(); ++row) {
-      const std::uint64_t bits = signs(++rows_ * 0x9e3779b97f4a7c15);
+      const Row z = probes(++rows_);
       bool changes = false;  // nothing changes the last row of a block with a loss
       for (int k = 0; k < block.count; ++k) {
         const ColumnRange& range = system_.columns[block.variables[static_cast<std::size_t>(k)]];
         const auto J = linearised.jacobian(k, range.size).row(row);
         if (J.isZero(0.0)) continue;
         changes = true;
-        for (int p = 0; p < kProbes; ++p)
-          Jtz_.col(p).segment(range.start, range.size) += ((bits >> p & 1U) != 0 ? 1.0 : -1.0) * J;
+        for (int c = 0; c < range.size; ++c) Jtz_.row(range.start + c) += J[c] * z;
       }
       if (!changes) continue;
       squares_ += linearised.residuals()[row] * linearised.residuals()[row];
@@ -44,12 +43,30 @@ class Probes {
   [[nodiscard]] double squares() const { return squares_; }
   [[nodiscard]] double n() const { return n_; }
   [[nodiscard]] double trace() const {
-    return system_.L().triangularView<Eigen::Lower>().solve(Jtz_).squaredNorm() / kProbes;
+    const Eigen::SparseMatrix<double>& L = system_.L();
+    Rows x = Jtz_;
+    for (Eigen::Index j = 0; j < L.cols(); ++j) {
+      Eigen::SparseMatrix<double>::InnerIterator below(L, j);  // begins on the diagonal
+      const Row solved = x.row(j) / below.value();
+      x.row(j) = solved;
+      for (++below; below; ++below) x.row(below.row()) -= below.value() * solved;
+    }
+    return x.squaredNorm() / kProbes;
   }
 
  private:
+  using Row = Eigen::Matrix<double, 1, kProbes>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, kProbes, Eigen::RowMajor>;
+
+  static Row probes(std::uint64_t row) {
+    const std::uint64_t bits = signs(row * 0x9e3779b97f4a7c15);
+    Row z;
+    for (int p = 0; p < kProbes; ++p) z[p] = (bits >> p & 1U) != 0 ? 1.0 : -1.0;
+    return z;
+  }
+
   const Factorisation& system_;
-  Eigen::MatrixXd Jtz_;
+  Rows Jtz_;
   std::uint64_t rows_ = 0;
   double squares_ = 0.0, n_ = 0.0;
 };

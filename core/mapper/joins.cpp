@@ -24,6 +24,11 @@ constexpr double kDoorwayCost = 0.3;      // there is one in the prolonged part
 constexpr double kSpreadCost = 1.5;       // ... and drift widens it, but so much for a metre
 constexpr double kOpenFloorCost = 4.0;    // the wearer walked through the prolonged part here and there: no wall
 constexpr double kInferredCost = 2.0;     // that a wall was not touched at all
+constexpr double kFreeEndCost = 4.4;      // of a partition; rarer than a doorway between its end and the next wall
+constexpr double kThickest = 0.4;         // m: of partitions
+constexpr double kFacesCross = 0.1;       // m: drift may make one so much thinner than nothing
+constexpr double kUneven = 0.7;           // m: hands on its two faces leave a free end at places that differ by so much
+constexpr double kFreeEndSigma = 0.15;    // m: hands stop before the end
 constexpr double kCornerMargin = 0.25;    // m: so near to a corner others may seem to be crossed
 
 /// Prolonging is likelier the shorter, but once furniture is in the way the length matters less.
@@ -75,6 +80,17 @@ Join Joiner::inferred(const Stretch& a, const Stretch& b) const {
   return join;
 }
 
+/// Round the end of a partition, from one of its faces to the other.
+Join Joiner::free_end(const Stretch& a, const Stretch& b) const {
+  if (a.frame.normal.dot(b.frame.normal) > -std::cos(kSameHeading)) return {};
+  const double thickness = -0.5 * (a.frame.distance(b.tail()) + b.frame.distance(a.head()));
+  const double beyond = a.frame.along(b.tail()) - a.touched.hi;
+  if (thickness < -kFacesCross || thickness > kThickest || std::abs(beyond) > kUneven) return {};
+  const double end = std::max(0.0, beyond);
+  return {Join::Kind::Inferred, a.touched.hi + end, b.touched.lo + beyond - end,
+          kFreeEndCost + prolonging_cost(std::abs(beyond)), kFreeEndSigma};
+}
+
 double Joiner::obstruction(const Stretch& wall, double from, double to, const Stretch& neighbour) const {
   if (to - from < kCornerMargin) return 0.0;
   const Eigen::Vector2d p = wall.frame.point(from).head<2>(), q = wall.frame.point(to).head<2>();
@@ -105,6 +121,7 @@ Join Joiner::join(std::size_t a, std::size_t b) const {
   } else {
     best = continuation(wa, wb);
     if (best.kind == Join::Kind::None) best = inferred(wa, wb);
+    if (best.kind == Join::Kind::None) best = free_end(wa, wb);
     if (best.kind == Join::Kind::None) return {};
   }
   if (best.kind == Join::Kind::Straight) {

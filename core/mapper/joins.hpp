@@ -16,7 +16,7 @@ struct Join {
     None,
     Corner,    ///< their planes intersect
     Straight,  ///< the other continues it in the same plane: one wall
-    Inferred   ///< both meet a wall between them that nobody touched
+    Inferred   ///< both meet a wall between them that nobody touched: also round the free end of a partition
   } kind = Kind::None;
   double head_s = 0.0;                                    ///< on the wall that ends there
   double tail_s = 0.0;                                    ///< on the wall that begins there
@@ -40,6 +40,7 @@ class Joiner {
  private:
   [[nodiscard]] Join continuation(const Stretch& a, const Stretch& b) const;
   [[nodiscard]] Join inferred(const Stretch& a, const Stretch& b) const;
+  [[nodiscard]] Join free_end(const Stretch& a, const Stretch& b) const;
   /// What speaks against `wall` going on from `from` to `to`, m: what was touched cuts it, or the wearer walked
   /// through.
   [[nodiscard]] double obstruction(const Stretch& wall, double from, double to, const Stretch& neighbour) const;

@@ -11,6 +11,7 @@ namespace kinemap {
 namespace {
 
 constexpr double kSameDoorway = 0.6;  // m: passages so near are one doorway
+constexpr double kLeastArea = 0.5;    // m²: nobody was in less; the faces of a thin partition may seem to cross
 
 /// A wall has the id that the first of its stretches had.
 std::uint32_t id_of(const MapState& state, const FiniteWall& wall) {
@@ -60,7 +61,7 @@ std::vector<Room> find_rooms(const MapState& state, const std::vector<FiniteWall
     }
     if (ring.empty() || walls[ring.back()].head.neighbour != start) continue;
     Room room = room_of(state, walls, ring);
-    if (room.polygon.size() < 3 || room.area_m2 <= 0.0) continue;
+    if (room.polygon.size() < 3 || room.area_m2 < kLeastArea) continue;
     room.height_m = config.height_m;
     room.id = static_cast<std::uint32_t>(rooms.size() + 1);
     rooms.push_back(std::move(room));

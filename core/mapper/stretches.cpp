@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/mapper/polygon.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -19,6 +21,8 @@ constexpr double kBesideDoor = 1.2;    // m: a partition goes on beyond what was
 constexpr double kSameDoorway = 0.6;   // m: passages so near are through one doorway
 constexpr double kFacesApart = 2.2;    // m: its faces may be touched on different sides of the doorway
 constexpr double kDoorGap = 1.6;       // m: collinear stretches so near are one wall with a doorway between
+constexpr double kStep = 0.4;          // m: from one place to another; people on two sides of a wall are farther apart
+constexpr double kStoreys = 1.5;       // m: apart at least
 
 bool same_side(const Stretch& a, const Stretch& b) {
   return a.frame.normal.dot(b.frame.normal) > std::cos(kSameHeading);
@@ -104,14 +108,41 @@ void unite_sides(const MapState& state, const WallFrame& wall, const std::vector
   }
 }
 
+/// Places a step from each other are in one room unless something is between them.
+void unite_neighbours(const MapState& state, const std::vector<Stretch>& stretches, const std::vector<Interval>& solid,
+                      const std::vector<std::size_t>& piece, Sets& sets) {
+  const auto& poses = state.graph.poses;
+  std::vector<std::size_t> by_x(poses.size());
+  std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+  std::sort(by_x.begin(), by_x.end(), [&](std::size_t a, std::size_t b) { return poses[a].p.x() < poses[b].p.x(); });
+  const auto wall_between = [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+      const WallFrame& wall = stretches[k].frame;
+      if (ways_cross(p, q, wall.point(solid[k].lo).head<2>(), wall.point(solid[k].hi).head<2>())) return true;
+    }
+    return false;
+  };
+  for (std::size_t n = 0; n < by_x.size(); ++n) {
+    const Eigen::Vector3d& p = poses[by_x[n]].p;
+    for (std::size_t m = n + 1; m < by_x.size() && poses[by_x[m]].p.x() - p.x() < kStep; ++m) {
+      const Eigen::Vector3d& q = poses[by_x[m]].p;
+      if (std::abs(q.y() - p.y()) > kStep || std::abs(q.z() - p.z()) > kStoreys) continue;
+      const std::size_t a = piece[by_x[n]], b = piece[by_x[m]];
+      if (sets.find(a) != sets.find(b) && !wall_between(p.head<2>(), q.head<2>())) sets.unite(a, b);
+    }
+  }
+}
+
 /// The trajectory falls into pieces where it passes through walls; what was touched from one piece is in one zone.
-/// Pieces from which the same wall was touched are one, and so are those on one side of a doorway.
+/// Pieces from which the same wall was touched are one, and so are those on one side of a doorway and those between
+/// which there is but a step.
 std::vector<std::size_t> find_zones(const MapState& state, std::vector<Stretch>& stretches) {
   std::vector<std::size_t> piece(state.graph.poses.size(), 0);
+  std::vector<Interval> solid;
   std::vector<std::vector<Passage>> through;
   for (const Stretch& wall : stretches) {
-    const Interval solid = solid_part(wall, stretches);
-    through.push_back(passages(state, wall.frame, solid.lo, solid.hi));
+    solid.push_back(solid_part(wall, stretches));
+    through.push_back(passages(state, wall.frame, solid.back().lo, solid.back().hi));
     for (const Passage& passage : through.back())
       if (passage.pose + 1 < piece.size()) piece[passage.pose + 1] = 1;
   }
@@ -122,6 +153,7 @@ std::vector<std::size_t> find_zones(const MapState& state, std::vector<Stretch>&
     for (const std::size_t pose : stretches[k].poses) sets.unite(piece[pose], piece[stretches[k].poses.front()]);
     unite_sides(state, stretches[k].frame, through[k], piece, sets);
   }
+  unite_neighbours(state, stretches, solid, piece, sets);
   for (Stretch& wall : stretches)
     if (!wall.poses.empty()) wall.zone = sets.find(piece[wall.poses.front()]);
   for (std::size_t& zone : piece) zone = sets.find(zone);

@@ -64,8 +64,10 @@ std::vector<std::vector<std::size_t>> rings_of(const Order& next) {
 }
 
 /// A closed ring is a room when it goes round counter-clockwise, does not cross itself and has the wearer in it.
-bool is_room(const MapState& state, const std::vector<Stretch>& walls, const JoinTable& joins,
-             const std::vector<std::size_t>& ring) {
+/// Clockwise and without the wearer it is the outside of something that stands free in a room: a partition, a pillar.
+/// The two faces of a partition may cross by drift.
+bool is_room_or_island(const MapState& state, const std::vector<Stretch>& walls, const JoinTable& joins,
+                       const std::vector<std::size_t>& ring) {
   std::vector<Eigen::Vector2d> polygon;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Join& before = joins[ring[(k + ring.size() - 1) % ring.size()]][ring[k]];
@@ -75,15 +77,18 @@ bool is_room(const MapState& state, const std::vector<Stretch>& walls, const Joi
     if (before.kind != Join::Kind::Straight) polygon.push_back(frame.point(before.tail_s).head<2>());
     if (after.kind == Join::Kind::Inferred) polygon.push_back(frame.point(after.head_s).head<2>());
   }
-  if (polygon.size() < 3 || area(polygon) <= 0.0 || !is_simple(polygon)) return false;
-  std::size_t inside = 0, all = 0;
+  if (polygon.size() < 3) return false;
+  double inside = 0.0, all = 0.0;
   for (const std::size_t k : ring)
     for (const std::size_t pose : walls[k].poses)
-      ++all, inside += contains(polygon, state.graph.poses[pose].p.head<2>()) ? 1 : 0;
-  return static_cast<double>(inside) >= kInside * static_cast<double>(all);
+      ++all, inside += contains(polygon, state.graph.poses[pose].p.head<2>()) ? 1.0 : 0.0;
+  if (area(polygon) > 0.0 && is_simple(polygon) && inside >= kInside * all) return true;
+  const bool two_faces = ring.size() == 2;
+  return (two_faces || (area(polygon) < 0.0 && is_simple(polygon))) && inside <= (1.0 - kInside) * all;
 }
 
-/// The cheapest order of which every ring is a room. Where one is not, each of its joins is forbidden in turn.
+/// The cheapest order of which every ring is a room or an island. Where one is not, each of its joins is forbidden in
+/// turn.
 Order find_order(const MapState& state, const std::vector<Stretch>& walls, const JoinTable& joins) {
   std::priority_queue<Solution> open;
   open.push(solve(joins, {}));
@@ -91,12 +96,12 @@ Order find_order(const MapState& state, const std::vector<Stretch>& walls, const
     Solution best = open.top();
     open.pop();
     const auto rings = rings_of(best.next);
-    const auto wrong =
-        std::find_if(rings.begin(), rings.end(), [&](const auto& ring) { return !is_room(state, walls, joins, ring); });
+    const auto wrong = std::find_if(rings.begin(), rings.end(),
+                                    [&](const auto& ring) { return !is_room_or_island(state, walls, joins, ring); });
     if (wrong == rings.end()) return best.next;
     if (trial == kMaxTrials) {
       for (const auto& ring : rings)
-        if (!is_room(state, walls, joins, ring)) best.next[ring.back()].reset();
+        if (!is_room_or_island(state, walls, joins, ring)) best.next[ring.back()].reset();
       return best.next;
     }
     for (const std::size_t a : *wrong) {

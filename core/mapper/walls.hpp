@@ -31,11 +31,12 @@ struct FiniteWall {
 
 /// Cuts the infinite planes of the walls at their intersections (paper, section IV). Each wall has a head and a tail
 /// (room on the left); heads are joined to tails one to one such that the walls are prolonged and shortened least in
-/// sum and every closed ring is a room: counter-clockwise, without crossing itself, with the wearer in it. Walls of
-/// rooms between which the wearer walked through a wall are never joined. A head only ever meets a tail, so outer
-/// corners, inner corners of L-shapes and the two faces of a partition come out of the same rule. Where two parallel
-/// walls lack the one between them, it is inferred from what stands in front of it. An end that meets nobody stays
-/// where the hand last touched.
+/// sum and every closed ring is a room: counter-clockwise, without crossing itself, with the wearer in it; or,
+/// clockwise and without the wearer, something that stands free in one. Walls of rooms between which the wearer walked
+/// through a wall are never joined. A head only ever meets a tail, so outer corners, inner corners of L-shapes and the
+/// two faces of a partition come out of the same rule. Where two parallel walls lack the one between them, it is
+/// inferred from what stands in front of it; where the two faces of a partition end in one room, its end. An end that
+/// meets nobody stays where the hand last touched.
 std::vector<FiniteWall> cut_walls(const MapState& state, const MapperConfig::Walls& config);
 
 }  // namespace kinemap

@@ -292,6 +292,63 @@ TEST(CutWalls, AStubInTheRoomDisturbsNoCorner) {
   EXPECT_EQ(rooms_of(visit).size(), 1u);
 }
 
+/// Points round a rectangle seen from outside, clockwise: the room is about it.
+Points outside_of(Eigen::Vector2d lo, Eigen::Vector2d hi) { return {lo, {lo.x(), hi.y()}, hi, {hi.x(), lo.y()}}; }
+
+/// Walking round its ends within a doorway's reach splits the way in two, until the wearer comes to where he was
+/// before.
+TEST(CutWalls, APartitionThatStandsFreeEndsWhereItWasTouched) {
+  Visit visit;
+  visit.touch_all({{0, 0}, {9, 0}, {9, 8}, {0, 8}}, 0.4);
+  visit.walk_to({0.5, 6}).touch({1.31, 3.65}, {3.69, 3.65});
+  visit.walk_to({4.2, 4.1}).walk_to({4.2, 3.1});
+  visit.touch({3.6, 3.55}, {1.31, 3.55});
+  visit.walk_to({0.5, 0.5}).walk_to({5.2, 1.0}).walk_to({5.2, 2.0});
+  visit.touch({6.45, 1.95}, {6.45, 4.0});
+  visit.walk_to({6.5, 4.6});
+  visit.touch({6.55, 4.05}, {6.55, 1.95});
+  visit.walk_to({8.5, 1});
+  expect_lengths(cut_walls(visit.state, kConfig), {9, 8, 9, 8, 2.38, 2.38, 2.1, 2.1}, 1e-3);
+  const auto rooms = rooms_of(visit);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area_m2, 72.0, 1e-9);
+}
+
+TEST(CutWalls, TheFacesOfAFreePartitionMayCrossByDrift) {
+  Visit visit;
+  visit.touch_all({{0, 0}, {9, 0}, {9, 8}, {0, 8}}, 0.4);
+  visit.walk_to({0.5, 5}).touch({3, 3.97}, {6, 3.97});  // its back, 6 cm through its front
+  visit.walk_to({6.7, 4.5}).walk_to({6.7, 3.5});
+  visit.touch({6, 4.03}, {3, 4.03});
+  visit.walk_to({0.5, 0.5});
+  const auto walls = cut_walls(visit.state, kConfig);
+  expect_lengths(walls, {9, 8, 9, 8, 3, 3});
+  EXPECT_EQ(walls[4].head.kind, EndKind::Inferred);
+  EXPECT_EQ(rooms_of(visit).size(), 1u);
+}
+
+TEST(CutWalls, APartitionThatEndsInTheRoom) {
+  Visit visit;
+  visit.touch_all({{0, 0}, {3, 0}, {3, 2}, {3.1, 2}, {3.1, 0}, {6, 0}, {6, 4}, {0, 4}}, 0.3);
+  auto& landmarks = visit.state.graph.landmarks;
+  landmarks[2].active = false;  // nobody touches the narrow end
+  expect_lengths(cut_walls(visit.state, kConfig), {3, 1.7, 1.7, 2.9, 4, 6, 4}, 1e-6);
+  const auto rooms = rooms_of(visit);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area_m2, 24.0 - 0.17, 1e-9);
+  EXPECT_EQ(rooms[0].inferred_sides.size(), 1u);
+}
+
+TEST(CutWalls, APillarIsNoRoom) {
+  Visit visit;
+  visit.touch_all({{0, 0}, {6, 0}, {6, 5}, {0, 5}}, 0.4);
+  visit.touch_all(outside_of({2.0, 2.0}, {2.8, 2.6}), 0.1);
+  expect_lengths(cut_walls(visit.state, kConfig), {6, 5, 6, 5, 0.6, 0.8, 0.6, 0.8});
+  const auto rooms = rooms_of(visit);
+  ASSERT_EQ(rooms.size(), 1u);
+  EXPECT_NEAR(rooms[0].area_m2, 30.0, 1e-9);
+}
+
 TEST(CutWalls, NoWallsNoRooms) { EXPECT_TRUE(cut_walls(MapState{}, kConfig).empty()); }
 
 }  // namespace

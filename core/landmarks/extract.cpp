@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/landmarks/corners.hpp"
 #include "core/landmarks/geometry.hpp"
@@ -20,6 +21,8 @@ constexpr double kMinPart = 3.0;         // s: an object that shares its gesture
 constexpr double kMinBesideWall = 1.8;   // s: a wall after a wall
 constexpr double kLongerWall = 1.5;      // × wall_min_extent_m, of a wall beside something else
 constexpr double kCutStep = 0.75;        // s between the cuts that are tried in a gesture over two objects
+constexpr double kPatience = 5.0;        // s: for so long what is drawn on a wall may look otherwise
+constexpr double kWallOfSeveral = 1.0;   // m: each of several walls is longer; strokes in the air are shorter
 constexpr double kMostOfAPart = 0.75;    // of the contacts of such a part are on its object
 constexpr double kHighestEdge = 1.1;     // m over the floor, of a table that was not drawn all round
 constexpr int kDeepest = 3;              // leftovers of leftovers
@@ -201,7 +204,9 @@ bool may_be_table_edge(std::span<const TracePoint> points, const Surface& surfac
   return height < kHighest && length < kLongest && 1.48 * median(std::move(off)) < kSpread;
 }
 
-Attempt wall(std::span<const TracePoint> points, const Surface& surface, double floor_z, const LandmarkConfig& config) {
+/// `floor_z`: null where walls are expected, so that no line is taken for the edge of a table.
+Attempt wall(std::span<const TracePoint> points, const Surface& surface, std::optional<double> floor_z,
+             const LandmarkConfig& config) {
   const Eigen::Vector3d along(-surface.normal.y(), surface.normal.x(), 0.0);
   const double apart = std::abs(along.dot(points[surface.members.back()].p - points[surface.members.front()].p));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
@@ -212,7 +217,7 @@ Attempt wall(std::span<const TracePoint> points, const Surface& surface, double 
   // First and last contact far apart (paper, section IV): a hand that waves to and fro in the air does not get
   // anywhere.
   if (apart < config.wall_min_extent_m || apart < 0.4 * (hi - lo)) return {std::nullopt, kNeither};
-  if (may_be_table_edge(points, surface, floor_z, hi - lo))
+  if (floor_z && may_be_table_edge(points, surface, *floor_z, hi - lo))
     return {std::nullopt, "a straight level line at the height of a table: one edge of it, or a wall"};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Wall;
@@ -304,14 +309,17 @@ bool comes_back(std::span<const TracePoint> points, IndexRange range) {
   return range.begin < range.end && (points[range.end - 1].p - points[range.begin].p).norm() < 0.6 * farthest;
 }
 
+bool is_most_of(const Observation& seen, IndexRange range) {
+  return static_cast<double>(seen.contacts.size()) >= kMostOfAPart * static_cast<double>(range.end - range.begin);
+}
+
 /// The one object that nearly all of points[begin, end) were drawn on, if there is one.
 std::optional<Observation> single_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
                                          const LandmarkConfig& config) {
   auto found = main_object(points, range, floor_z, config).observation;
   if (!(found && is_rectangle(*found)) && comes_back(points, range))
     if (auto bent = bent_screen(points, range, config)) found = std::move(bent);
-  const auto all = static_cast<double>(range.end - range.begin);
-  if (found && static_cast<double>(found->contacts.size()) < kMostOfAPart * all) found.reset();
+  if (found && !is_most_of(*found, range)) found.reset();
   return found;
 }
 
@@ -358,17 +366,29 @@ void extract_leftover(std::span<const TracePoint> points, IndexRange range, bool
   extract_leftover(points, rest, after, floor_z, rule, depth + 1, out);
 }
 
+Eigen::Vector3d middle(std::span<const TracePoint> points, const Observation& seen) {
+  return points[seen.contacts[seen.contacts.size() / 2]].p;
+}
+
+bool as_low_as_tables(std::span<const TracePoint> points, const Observation& seen, double floor_z) {
+  return middle(points, seen).z() - floor_z < kHighestEdge;
+}
+
+/// How far in front of the other, m, the one of two walls is that is less so: > 0 at an inner corner of a room.
+double in_front_of_each_other(std::span<const TracePoint> points, const Observation& a, const Observation& b) {
+  const auto before = [&](const Observation& wall, const Eigen::Vector3d& p) {
+    const double heading = wall.landmark.x[0];
+    return Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0).dot(p - wall.landmark.anchor);
+  };
+  return std::min(before(a, middle(points, b)), before(b, middle(points, a)));
+}
+
 /// Two edges of a table, seen from outside its corner, look like two walls; walls at that height surround the wearer.
 bool may_be_table_corner(std::span<const TracePoint> points, const Observation& a, const Observation& b,
                          double floor_z) {
-  if (a.landmark.kind != LandmarkKind::Wall || b.landmark.kind != LandmarkKind::Wall) return false;
-  const auto middle = [&](const Observation& wall) { return points[wall.contacts[wall.contacts.size() / 2]].p; };
-  const auto before = [&](const Observation& wall, const Eigen::Vector3d& p) {
-    const double heading = wall.landmark.x[0];
-    return Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0).dot(p - wall.landmark.anchor) > 0.0;
-  };
-  return std::max(middle(a).z(), middle(b).z()) - floor_z < kHighestEdge &&
-         !(before(a, middle(b)) && before(b, middle(a)));
+  if (is_rectangle(a) || is_rectangle(b)) return false;
+  return as_low_as_tables(points, a, floor_z) && as_low_as_tables(points, b, floor_z) &&
+         in_front_of_each_other(points, a, b) <= 0.0;
 }
 
 /// Where a gesture over two objects may be cut in time so that each part is long enough.
@@ -422,6 +442,53 @@ std::vector<Observation> two_objects(std::span<const TracePoint> points, IndexRa
   return {*first, *second};
 }
 
+std::size_t contacts_of(const std::vector<Observation>& seen) {
+  return std::accumulate(seen.begin(), seen.end(), std::size_t{0},
+                         [](std::size_t sum, const Observation& o) { return sum + o.contacts.size(); });
+}
+
+/// A gesture along three walls or more, one after the other, as when one walks round a room with the hand on the wall:
+/// each as long as the hand stays on it. Empty where that leaves out more than the hand's way from one to the next, or
+/// where it looks like the edges of something that the wearer walked round.
+std::vector<Observation> walls_one_after_the_other(std::span<const TracePoint> points, IndexRange range, double floor_z,
+                                                   LandmarkConfig config) {
+  config.wall_min_extent_m = kWallOfSeveral;
+  const auto wall_in = [&](IndexRange part) {
+    const auto tried = points.subspan(part.begin, part.end - part.begin);
+    const auto surface = find_upright_surface(tried, config);
+    auto found = surface ? wall(tried, *surface, std::nullopt, config).observation : std::nullopt;
+    if (found) shift(*found, part.begin);
+    return found && is_most_of(*found, part) ? found : std::nullopt;
+  };
+  const auto seconds_after = [&](std::size_t from, double seconds) {
+    std::size_t to = from;
+    while (to < range.end && points[to].time_s - points[from].time_s < seconds) ++to;
+    return to;
+  };
+  std::vector<Observation> walls;
+  for (std::size_t begin = range.begin; begin < range.end;) {
+    std::optional<Observation> longest;
+    std::size_t end = seconds_after(begin, kMinBesideWall), give_up = seconds_after(begin, kPatience);
+    for (; end < range.end + 1 && end <= give_up; end = end == range.end ? end + 1 : seconds_after(end, kCutStep)) {
+      auto found = wall_in({begin, end});
+      if (!found) continue;
+      longest = std::move(found);
+      give_up = seconds_after(end - 1, kPatience);
+    }
+    begin = longest ? longest->contacts.back() + 1 : seconds_after(begin, kCutStep);
+    if (longest) walls.push_back(std::move(*longest));
+  }
+  int low = 0, inner = 0;
+  for (std::size_t k = 1; k < walls.size(); ++k) {
+    if (!as_low_as_tables(points, walls[k], floor_z)) continue;
+    ++low, inner += in_front_of_each_other(points, walls[k - 1], walls[k]) > 0.0 ? 1 : 0;
+  }
+  const bool most =
+      static_cast<double>(contacts_of(walls)) >= kMostOfAPart * static_cast<double>(range.end - range.begin);
+  if (walls.size() < 3 || !most || 2 * inner < low) walls.clear();
+  return walls;
+}
+
 }  // namespace
 
 Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z, const LandmarkConfig& config) {
@@ -430,6 +497,11 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
   auto main = main_object(points, drawn, floor_z, config);
   const PartRule part = part_rule(config, false);
   const bool wall = main.observation && !is_rectangle(*main.observation);
+  std::vector<Observation> walls;
+  if (!main.observation || (wall && !is_most_of(*main.observation, drawn)))
+    walls = walls_one_after_the_other(points, drawn, floor_z, config);
+  if (!main.observation && !walls.empty() && !may_be_two_contours(points, drawn, part))
+    return {std::move(walls), {}, {}};
   // Two rectangles are no accident; walls can be cut out of a bent contour.
   const auto all_rectangles = [](const std::vector<Observation>& seen) {
     return !seen.empty() && std::ranges::all_of(seen, is_rectangle);
@@ -454,6 +526,8 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
     extract_leftover(points, {drawn.begin, main.contacts.begin}, false, floor_z, rule, 0, out.observations);
     extract_leftover(points, {main.contacts.end, drawn.end}, true, floor_z, rule, 0, out.observations);
   }
+  if (std::ranges::none_of(out.observations, is_rectangle) && contacts_of(walls) > contacts_of(out.observations))
+    out.observations = std::move(walls);
   if (out.observations.empty()) out.reason = main.reason, out.tried = main.contacts;
   std::sort(out.observations.begin(), out.observations.end(),
             [](const Observation& a, const Observation& b) { return a.contacts.front() < b.contacts.front(); });

@@ -133,6 +133,40 @@ TEST(Extract, TwoWallsInOneGesture) {
   EXPECT_GT(std::abs(wrap_angle(found.observations[0].landmark.x[0] - found.observations[1].landmark.x[0])), 1.4);
 }
 
+void expect_walls(const Extraction& found, const std::vector<double>& headings) {
+  ASSERT_EQ(found.observations.size(), headings.size()) << found.reason;
+  for (std::size_t k = 0; k < headings.size(); ++k) {
+    const auto& wall = found.observations[k].landmark;
+    EXPECT_EQ(wall.kind, LandmarkKind::Wall);
+    EXPECT_NEAR(wrap_angle(wall.x[0] - headings[k]), 0.0, 0.03) << "wall " << k;
+  }
+}
+
+TEST(Extract, AllWallsOfARoomInOneGesture) {
+  const double quarter = std::numbers::pi / 2.0;
+  for (const double height : {0.95, 1.3}) {
+    const auto room = trace(round_trip(level_rectangle({0, 0, height}, 0.0, 4.0, 3.0)));
+    expect_walls(extract_landmarks(room, 0.0, kConfig), {quarter, 2 * quarter, -quarter, 0.0});
+    const auto three = trace({{-2, -1.5, height}, {2, -1.5, height}, {2, 1.5, height}, {-2, 1.5, height}});
+    expect_walls(extract_landmarks(three, 0.0, kConfig), {quarter, 2 * quarter, -quarter});
+  }
+}
+
+TEST(Extract, WallsRoundAnOuterCornerInOneGesture) {
+  const double h = 1.2, quarter = std::numbers::pi / 2.0;
+  const auto l_shape = trace({{-1.5, -1.5, h}, {4, -1.5, h}, {4, 1.5, h}, {2, 1.5, h}, {2, 4, h}, {-1.5, 4, h}});
+  expect_walls(extract_landmarks(l_shape, 0.0, kConfig), {quarter, 2 * quarter, -quarter, 2 * quarter, -quarter});
+}
+
+/// Six edges of an L-shaped desk, seen from outside.
+TEST(Extract, WhatOneWalksRoundAtTheHeightOfTablesIsNoWalls) {
+  const double h = 0.9;
+  auto points = trace({{0, 0, h}, {3, 0, h}, {3, 1.2, h}, {1.2, 1.2, h}, {1.2, 3, h}, {0, 3, h}, {0, 0, h}});
+  for (TracePoint& point : points) point.p_body = 2.0 * (point.p - Eigen::Vector3d(0.8, 0.8, h));
+  for (const auto& seen : extract_landmarks(points, 0.0, kConfig).observations)
+    EXPECT_NE(seen.landmark.kind, LandmarkKind::Wall);
+}
+
 TEST(Extract, ANarrowPieceOfWallIsAWall) {
   const auto found = extract_landmarks(trace({{0, 1, 1.3}, {0.5, 1, 1.2}}), 0.0, kConfig);
   ASSERT_EQ(found.observations.size(), 1u) << found.reason;

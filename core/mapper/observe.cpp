@@ -12,15 +12,48 @@ using graph::ContactFactor;
 using graph::Edge;
 using graph::LandmarkKind;
 
+constexpr double kHandTurns = 0.2;      // rad: people draw with the hand at one angle to the surface ...
+constexpr double kThen = 2.0;           // s: ... for so long at least
+constexpr double kWhileTurning = 10.0;  // × the noise of a contact that tells where a side ends all the same
+constexpr double kLongestTurn = 1.5;    // s, of the hand on its way to the surface or from it
+
+/// Indices [begin, end) into observation.contacts without those at either end in which the hand still turns to the
+/// surface, or turns away already. They are near it, but not on it, and nothing else turns the hand so far: a few of
+/// them would tell wrongly where along the hand it touches.
+IndexRange without_turns(const Observation& observation, const Trace& trace, const graph::Graph& graph) {
+  const auto& contacts = observation.contacts;
+  std::vector<double> angle;
+  for (const std::size_t k : contacts)
+    angle.push_back(std::asin(std::clamp(fingers_into(observation.landmark, trace.contacts[k], graph), -1.0, 1.0)));
+  const auto time = [&](std::ptrdiff_t k) { return trace.contacts[contacts[static_cast<std::size_t>(k)]].time_s; };
+  const auto n = static_cast<std::ptrdiff_t>(contacts.size());
+  // How many from `first` on, by `step`, are at another angle than those right after.
+  const auto turning = [&](std::ptrdiff_t first, std::ptrdiff_t step) {
+    for (std::ptrdiff_t k = first;; k += step) {
+      std::vector<double> after;
+      for (std::ptrdiff_t m = k + step; m >= 0 && m < n && std::abs(time(m) - time(k)) < kThen; m += step)
+        after.push_back(angle[static_cast<std::size_t>(m)]);
+      if (after.empty() || std::abs(time(k) - time(first)) > kLongestTurn ||
+          std::abs(angle[static_cast<std::size_t>(k)] - median(std::move(after))) < kHandTurns)
+        return static_cast<std::size_t>(std::abs(k - first));
+    }
+  };
+  if (contacts.empty()) return {0, 0};
+  const std::size_t front = turning(0, 1), back = turning(n - 1, -1);
+  return front + back < contacts.size() ? IndexRange{front, contacts.size() - back} : IndexRange{0, contacts.size()};
+}
+
 /// Indices into observation.contacts, thinned by distance; contacts in corners and contacts without a side are treated
 /// as they are: the former always kept, the latter left out for rectangles, of which they would only pull on the plane.
+/// `lying`: where the hand does not turn; where a side ends it may.
 std::vector<std::size_t> thinned(const Observation& observation, const std::vector<TracePoint>& points,
-                                 double spacing) {
+                                 IndexRange lying, double spacing) {
   const bool rectangle = observation.landmark.kind != LandmarkKind::Wall;
   std::vector<std::size_t> kept;
   for (std::size_t k = 0; k < observation.contacts.size(); ++k) {
     if (rectangle && observation.labels[k].edge == Edge::None) continue;
     const bool corner = observation.labels[k].corner != Edge::None;
+    if (!corner && (k < lying.begin || k >= lying.end)) continue;
     const auto& p = points[observation.contacts[k]].p;
     if (corner || kept.empty() || (p - points[observation.contacts[kept.back()]].p).norm() >= spacing)
       kept.push_back(k);
@@ -73,6 +106,14 @@ std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& gra
   return points;
 }
 
+double fingers_into(const graph::Landmark& landmark, const HandContact& contact, const graph::Graph& graph) {
+  const double heading = landmark.x[landmark.kind == LandmarkKind::Wall ? 0 : 3];
+  const Eigen::Vector3d normal = landmark.kind == LandmarkKind::Table
+                                     ? Eigen::Vector3d::UnitZ()
+                                     : Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
+  return -normal.dot(graph.poses[contact.key_pose].q * (contact.T_key_hand.q * -Eigen::Vector3d::UnitY()));
+}
+
 std::size_t add_observation(const Observation& observation, const Trace& trace, const std::vector<TracePoint>& points,
                             std::size_t touch, double floor_z, const MapperConfig& config, MapState& state) {
   const std::size_t landmark = state.graph.landmarks.size();
@@ -88,13 +129,15 @@ std::size_t add_observation(const Observation& observation, const Trace& trace, 
           {landmark, side, observation.landmark.x[static_cast<std::size_t>(side)], 1.0});
 
   const double spacing = spacing_of(observation.landmark, config.hand.contact_spacing_m);
-  const auto kept = thinned(observation, points, spacing);
+  const IndexRange lying = without_turns(observation, trace, state.graph);
+  const auto kept = thinned(observation, points, lying, spacing);
   const auto wider = inflation(observation, points, kept, spacing, config.hand.contact_correlation_s);
   ObservationRecord record{landmark, 0, state.graph.contacts.size(), kept.size(), 0, begin_s, end_s};
   for (const std::size_t k : kept) {
     const HandContact& contact = trace.contacts[observation.contacts[k]];
     const SideLabel label = observation.labels[k];
-    const double factor_of_side = wider[static_cast<std::size_t>(label.edge)];
+    const bool turning = k < lying.begin || k >= lying.end;
+    const double factor_of_side = wider[static_cast<std::size_t>(label.edge)] * (turning ? kWhileTurning : 1.0);
     ContactFactor factor;
     factor.i = contact.key_pose;
     factor.landmark = landmark;

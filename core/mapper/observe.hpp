@@ -14,6 +14,9 @@ namespace kinemap {
 /// trace that is already known is taken out before a landmark is fitted.
 std::vector<TracePoint> trace_points(const Trace& trace, const graph::Graph& graph, std::size_t touch);
 
+/// Sine of the angle at which the fingers point into the surface at a contact: 0 a flat hand, 1 at a right angle.
+double fingers_into(const graph::Landmark& landmark, const HandContact& contact, const graph::Graph& graph);
+
 /// Appends the observation as a landmark of its own, with one contact factor for each thinned contact. Returns the
 /// landmark's index.
 std::size_t add_observation(const Observation& observation, const Trace& trace, const std::vector<TracePoint>& points,

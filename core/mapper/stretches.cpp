@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -22,6 +23,7 @@ constexpr double kSameDoorway = 0.6;   // m: passages so near are through one do
 constexpr double kFacesApart = 2.2;    // m: its faces may be touched on different sides of the doorway
 constexpr double kDoorGap = 1.6;       // m: collinear stretches so near are one wall with a doorway between
 constexpr double kStep = 0.4;          // m: from one place to another; people on two sides of a wall are farther apart
+constexpr int kEnoughSteps = 10;       // ... and that by many: in a doorway a few seem to lead past the wall
 constexpr double kStoreys = 1.5;       // m: apart at least
 
 bool same_side(const Stretch& a, const Stretch& b) {
@@ -122,15 +124,18 @@ void unite_neighbours(const MapState& state, const std::vector<Stretch>& stretch
     }
     return false;
   };
+  std::map<std::pair<std::size_t, std::size_t>, int> steps;
   for (std::size_t n = 0; n < by_x.size(); ++n) {
     const Eigen::Vector3d& p = poses[by_x[n]].p;
     for (std::size_t m = n + 1; m < by_x.size() && poses[by_x[m]].p.x() - p.x() < kStep; ++m) {
       const Eigen::Vector3d& q = poses[by_x[m]].p;
       if (std::abs(q.y() - p.y()) > kStep || std::abs(q.z() - p.z()) > kStoreys) continue;
-      const std::size_t a = piece[by_x[n]], b = piece[by_x[m]];
-      if (sets.find(a) != sets.find(b) && !wall_between(p.head<2>(), q.head<2>())) sets.unite(a, b);
+      const std::size_t a = sets.find(piece[by_x[n]]), b = sets.find(piece[by_x[m]]);
+      if (a != b && !wall_between(p.head<2>(), q.head<2>())) ++steps[std::minmax(a, b)];
     }
   }
+  for (const auto& [pieces, count] : steps)
+    if (count >= kEnoughSteps) sets.unite(pieces.first, pieces.second);
 }
 
 /// The trajectory falls into pieces where it passes through walls; what was touched from one piece is in one zone.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mapper/observe.hpp"
+
 namespace kinemap {
 namespace {
 
@@ -38,20 +40,10 @@ Matrix3d covariance_of(double along_m, double across_m) {
 
 Matrix3d information_of(const graph::TouchPoint& touch) { return touch.sigma.cwiseAbs2().cwiseInverse().asDiagonal(); }
 
-/// Sine of the angle at which the fingers point into the surface: 0 a flat hand, 1 at a right angle; mean over the
-/// contacts.
-double fingers_into_surface(const Observation& observation, const Trace& trace, const graph::Graph& graph) {
-  const graph::Landmark& landmark = observation.landmark;
-  const double heading = landmark.x[landmark.kind == graph::LandmarkKind::Wall ? 0 : 3];
-  const Vector3d normal = landmark.kind == graph::LandmarkKind::Table
-                              ? Vector3d(0.0, 0.0, 1.0)
-                              : Vector3d(std::cos(heading), std::sin(heading), 0.0);
+/// Mean over the contacts.
+double fingers_into(const Observation& observation, const Trace& trace, const graph::Graph& graph) {
   double sum = 0.0;
-  for (const std::size_t k : observation.contacts) {
-    const HandContact& contact = trace.contacts[k];
-    const Vector3d fingers = graph.poses[contact.key_pose].q * (contact.T_key_hand.q * -Vector3d::UnitY());
-    sum -= fingers.dot(normal);
-  }
+  for (const std::size_t k : observation.contacts) sum += fingers_into(observation.landmark, trace.contacts[k], graph);
   return sum / static_cast<double>(observation.contacts.size());
 }
 
@@ -107,7 +99,7 @@ void TouchBelief::add(const Pivot& pivot) {
 
 void TouchBelief::see(const Observation& observation, const Trace& trace, const graph::Graph& graph) {
   Mean& mean = fingers_into_[observation.landmark.kind == graph::LandmarkKind::Table ? 0 : 1];
-  mean.sum += fingers_into_surface(observation, trace, graph);
+  mean.sum += fingers_into(observation, trace, graph);
   ++mean.count;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/landmarks/extract.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,6 +41,7 @@ struct Attempt {
   std::string reason;
   bool rather_walls = false;    ///< a level contour with the wearer inside, or too high for a table
   bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
+  bool round = false;           ///< and nothing else: pieces of it may look like sides
   double misfit = HUGE_VAL;     ///< of a screen: mean square distance of the whole trace from its contour, m²
 };
 
@@ -88,6 +90,41 @@ double contour_misfit(std::span<const Eigen::Vector2d> flat, const RectangleFit&
   return sum / static_cast<double>(flat.size());
 }
 
+/// Mean square distance of the contacts from the conic that fits them best, m² (Sampson's approximation).
+double conic_misfit(std::span<const Eigen::Vector2d> flat) {
+  Eigen::MatrixXd terms(flat.size(), 6);
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : flat) mean += p / static_cast<double>(flat.size());
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    const double x = flat[i].x() - mean.x(), y = flat[i].y() - mean.y();
+    terms.row(static_cast<Eigen::Index>(i)) << x * x, x * y, y * y, x, y, 1.0;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(terms, Eigen::ComputeThinV);
+  const Eigen::VectorXd c = svd.matrixV().col(5);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < terms.rows(); ++i) {
+    const double x = terms(i, 3), y = terms(i, 4), value = terms.row(i).dot(c);
+    const Eigen::Vector2d gradient(2.0 * c[0] * x + c[1] * y + c[3], c[1] * x + 2.0 * c[2] * y + c[4]);
+    sum += value * value / std::max(1e-12, gradient.squaredNorm());
+  }
+  return sum / static_cast<double>(flat.size());
+}
+
+/// Drawn in all directions alike, as nobody draws sides, and clearly better an ellipse: a round table, a mirror. As a
+/// rectangle it would bend the way to it.
+bool is_round(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
+  constexpr double kWindow = 0.1, kAlong = 0.95, kLeast = 0.6;  // m; cosine; part of the way
+  const auto travel = travel_directions(flat, kWindow);
+  const Eigen::Vector2d u(std::cos(fit.heading), std::sin(fit.heading)), v(-u.y(), u.x());
+  double along = 0.0, total = 0.0;
+  for (std::size_t i = 1; i < flat.size(); ++i) {
+    const double step = (flat[i] - flat[i - 1]).norm();
+    total += step;
+    if (std::max(std::abs(u.dot(travel[i])), std::abs(v.dot(travel[i]))) > kAlong) along += step;
+  }
+  return along < kLeast * total && 2.0 * conic_misfit(flat) < contour_misfit(flat, fit);
+}
+
 double shorter_side(const RectangleFit& fit) { return std::min(fit.size[0], fit.size[1]); }
 
 std::vector<Eigen::Vector2d> from_above(std::span<const TracePoint> points, const Surface& surface) {
@@ -123,6 +160,8 @@ Attempt table(std::span<const TracePoint> bent, Surface surface, double floor_z,
   if (!fit->closed && height > kHighestEdge)
     return {std::nullopt, "an open level contour, higher than tables are", true};
   if (wearer_inside(points, surface, *fit)) return {std::nullopt, "a level contour round the wearer, no table", true};
+  if (is_round(from_above(points, surface), *fit))
+    return {std::nullopt, "a round level contour, no rectangle", false, false, true};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Table;
   seen.landmark.x = {fit->centre.x(), fit->centre.y(), surface.offset, fit->heading, fit->size[0], fit->size[1], 0.0};
@@ -183,6 +222,8 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
   if (!clean || share < 0.5) return {std::nullopt, "a closed contour on an upright surface, but not a rectangle"};
   if (std::max(fit->size[0], fit->size[1]) < kSmallestScreen)
     return {std::nullopt, "a closed contour on an upright surface, too small for a screen"};
+  if (is_round(flat, *fit))
+    return {std::nullopt, "a round contour on an upright surface, no rectangle", false, false, true};
   Observation seen;
   seen.landmark.kind = LandmarkKind::Screen;
   const Eigen::Vector3d centre = foot + fit->centre.x() * u + fit->centre.y() * Eigen::Vector3d::UnitZ();
@@ -190,7 +231,7 @@ Attempt screen(std::span<const TracePoint> points, const Surface& surface, const
   seen.contacts = surface.members;
   seen.labels = fit->labels;
   seen.closed = fit->closed;
-  return {seen, {}, false, false, screen_misfit(points, surface, flat, *fit)};
+  return {seen, {}, false, false, false, screen_misfit(points, surface, flat, *fit)};
 }
 
 /// A straight line at one height (as level as the arm of a bad suit keeps it), as low as tables are: one edge of a
@@ -238,7 +279,7 @@ Attempt classify(std::span<const TracePoint> points, const Surface& surface, dou
     return {std::nullopt, "the surface leans: neither level nor upright"};
   if (surface.kind == Surface::Kind::Level) return table(points, surface, floor_z, config);
   auto contour = screen(points, surface, config);
-  if (contour.observation || contour.part_of_screen) return contour;
+  if (contour.observation || contour.part_of_screen || contour.round) return contour;
   auto line = wall(points, surface, floor_z, config);
   return line.observation || contour.reason == kNeither ? line : contour;
 }
@@ -272,6 +313,7 @@ struct MainObject {
   std::optional<Observation> observation;
   std::string reason;   ///< where it is none
   IndexRange contacts;  ///< of the object, else of the surface that was looked at
+  bool round = false;
 };
 
 MainObject main_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
@@ -294,6 +336,10 @@ MainObject main_object(std::span<const TracePoint> points, IndexRange range, dou
       break;
     }
     if (out.reason.empty()) out.reason = attempt.reason;
+    if (attempt.round) {
+      out.reason = attempt.reason, out.round = true;
+      break;
+    }
     rather_walls = attempt.rather_walls;
   }
   return out;
@@ -485,7 +531,7 @@ std::vector<Observation> walls_one_after_the_other(std::span<const TracePoint> p
   }
   const bool most =
       static_cast<double>(contacts_of(walls)) >= kMostOfAPart * static_cast<double>(range.end - range.begin);
-  if (walls.size() < 3 || !most || 2 * inner < low) walls.clear();
+  if (walls.size() < 3 || !most || (low > 0 && 2 * inner <= low)) walls.clear();
   return walls;
 }
 
@@ -495,6 +541,7 @@ Extraction extract_landmarks(std::span<const TracePoint> points, double floor_z,
   Extraction out;
   const IndexRange drawn = without_reach(points, config);
   auto main = main_object(points, drawn, floor_z, config);
+  if (main.round) return {{}, main.reason, main.contacts};
   const PartRule part = part_rule(config, false);
   const bool wall = main.observation && !is_rectangle(*main.observation);
   std::vector<Observation> walls;

@@ -264,6 +264,40 @@ TEST(Extract, SaysWhyNothingWasFound) {
   EXPECT_FALSE(nothing.reason.empty());
 }
 
+std::vector<TracePoint> oval(double length, double width) {
+  std::vector<Eigen::Vector3d> path;
+  for (int k = 0; k <= 72; ++k) {
+    const double a = 2.0 * std::numbers::pi * k / 72;
+    path.emplace_back(0.5 * length * std::cos(a), 1.5 + 0.5 * width * std::sin(a), 0.75);
+  }
+  return trace(path);
+}
+
+TEST(Extract, ARoundTableIsNoRectangle) {
+  for (const auto& points : {oval(0.8, 0.8), oval(1.1, 1.1), oval(1.4, 1.4), oval(1.5, 1.1), oval(1.8, 1.0)}) {
+    const auto found = extract_landmarks(points, 0.0, kConfig);
+    EXPECT_TRUE(found.observations.empty());
+    EXPECT_NE(found.reason.find("round"), std::string::npos) << found.reason;
+  }
+}
+
+TEST(Extract, ATableWithRoundCornersIsARectangle) {
+  std::vector<Eigen::Vector3d> path;
+  const double half_u = 0.8, half_v = 0.4, r = 0.15;
+  for (int corner = 0; corner < 4; ++corner) {
+    for (int k = 0; k <= 6; ++k) {
+      const double a = std::numbers::pi / 2.0 * (corner + k / 6.0);
+      const double u = corner == 0 || corner == 3 ? half_u - r : r - half_u, v = corner < 2 ? half_v - r : r - half_v;
+      path.emplace_back(u + r * std::cos(a), 1.5 + v + r * std::sin(a), 0.75);
+    }
+  }
+  path.push_back(path.front());
+  const auto found = extract_landmarks(trace(path), 0.0, kConfig);
+  ASSERT_EQ(found.observations.size(), 1u) << found.reason;
+  EXPECT_NEAR(long_side(found.observations[0].landmark), 1.6, 0.03);
+  EXPECT_NEAR(short_side(found.observations[0].landmark), 0.8, 0.03);
+}
+
 TEST(Extract, MovingEverythingMovesTheTableAlong) {
   const auto corners = level_rectangle({1.2, 0.4, 0.74}, 0.2, 1.5, 0.7);
   const auto points = with_reach(trace(round_trip(corners)), {0.2, -0.9, 1.0}, 0.7);

@@ -41,7 +41,7 @@ struct Attempt {
   std::string reason;
   bool rather_walls = false;    ///< a level contour with the wearer inside, or too high for a table
   bool part_of_screen = false;  ///< two or three sides of a rectangle: no wall
-  bool round = false;           ///< and nothing else: pieces of it may look like sides
+  bool round = false;           ///< and nothing else, though pieces of it may look like sides
   double misfit = HUGE_VAL;     ///< of a screen: mean square distance of the whole trace from its contour, m²
 };
 
@@ -313,7 +313,7 @@ struct MainObject {
   std::optional<Observation> observation;
   std::string reason;   ///< where it is none
   IndexRange contacts;  ///< of the object, else of the surface that was looked at
-  bool round = false;
+  bool round = false;   ///< see Attempt
 };
 
 MainObject main_object(std::span<const TracePoint> points, IndexRange range, double floor_z,
@@ -515,11 +515,13 @@ std::vector<Observation> walls_one_after_the_other(std::span<const TracePoint> p
   for (std::size_t begin = range.begin; begin < range.end;) {
     std::optional<Observation> longest;
     std::size_t end = seconds_after(begin, kMinBesideWall), give_up = seconds_after(begin, kPatience);
-    for (; end < range.end + 1 && end <= give_up; end = end == range.end ? end + 1 : seconds_after(end, kCutStep)) {
-      auto found = wall_in({begin, end});
-      if (!found) continue;
-      longest = std::move(found);
-      give_up = seconds_after(end - 1, kPatience);
+    while (end <= give_up) {
+      if (auto found = wall_in({begin, end})) {
+        longest = std::move(found);
+        give_up = seconds_after(end - 1, kPatience);
+      }
+      if (end == range.end) break;
+      end = seconds_after(end, kCutStep);
     }
     begin = longest ? longest->contacts.back() + 1 : seconds_after(begin, kCutStep);
     if (longest) walls.push_back(std::move(*longest));

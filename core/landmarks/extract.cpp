@@ -113,7 +113,7 @@ double conic_misfit(std::span<const Eigen::Vector2d> flat) {
 /// Drawn in all directions alike, as nobody draws sides, and clearly better an ellipse: a round table, a mirror. As a
 /// rectangle it would bend the way to it.
 bool is_round(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
-  constexpr double kWindow = 0.1, kAlong = 0.95, kLeast = 0.6;  // m; cosine; part of the way
+  constexpr double kWindow = 0.05, kAlong = 0.95, kLeast = 0.55, kBetter = 3.0;  // m; cosine; part of the way; times
   const auto travel = travel_directions(flat, kWindow);
   const Eigen::Vector2d u(std::cos(fit.heading), std::sin(fit.heading)), v(-u.y(), u.x());
   double along = 0.0, total = 0.0;
@@ -122,7 +122,7 @@ bool is_round(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
     total += step;
     if (std::max(std::abs(u.dot(travel[i])), std::abs(v.dot(travel[i]))) > kAlong) along += step;
   }
-  return along < kLeast * total && 2.0 * conic_misfit(flat) < contour_misfit(flat, fit);
+  return along < kLeast * total && kBetter * conic_misfit(flat) < contour_misfit(flat, fit);
 }
 
 double shorter_side(const RectangleFit& fit) { return std::min(fit.size[0], fit.size[1]); }

@@ -110,19 +110,30 @@ double conic_misfit(std::span<const Eigen::Vector2d> flat) {
   return sum / static_cast<double>(flat.size());
 }
 
+/// The way of the hand, m: along two axes (within 18°) and in all.
+struct Strokes {
+  double u = 0.0, v = 0.0, total = 0.0;
+};
+Strokes strokes_along(std::span<const Eigen::Vector2d> flat, double heading) {
+  constexpr double kWindow = 0.05, kAlong = 0.95;  // m; cosine
+  const auto travel = travel_directions(flat, kWindow);
+  const Eigen::Vector2d u(std::cos(heading), std::sin(heading)), v(-u.y(), u.x());
+  Strokes out;
+  for (std::size_t i = 1; i < flat.size(); ++i) {
+    const double step = (flat[i] - flat[i - 1]).norm();
+    out.total += step;
+    if (std::abs(u.dot(travel[i])) > kAlong) out.u += step;
+    if (std::abs(v.dot(travel[i])) > kAlong) out.v += step;
+  }
+  return out;
+}
+
 /// Drawn in all directions alike, as nobody draws sides, and clearly better an ellipse: a round table, a mirror. As a
 /// rectangle it would bend the way to it.
 bool is_round(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
-  constexpr double kWindow = 0.05, kAlong = 0.95, kLeast = 0.55, kBetter = 3.0;  // m; cosine; part of the way; times
-  const auto travel = travel_directions(flat, kWindow);
-  const Eigen::Vector2d u(std::cos(fit.heading), std::sin(fit.heading)), v(-u.y(), u.x());
-  double along = 0.0, total = 0.0;
-  for (std::size_t i = 1; i < flat.size(); ++i) {
-    const double step = (flat[i] - flat[i - 1]).norm();
-    total += step;
-    if (std::max(std::abs(u.dot(travel[i])), std::abs(v.dot(travel[i]))) > kAlong) along += step;
-  }
-  return along < kLeast * total && kBetter * conic_misfit(flat) < contour_misfit(flat, fit);
+  constexpr double kLeast = 0.55, kBetter = 3.0;  // part of the way; times
+  const Strokes way = strokes_along(flat, fit.heading);
+  return way.u + way.v < kLeast * way.total && kBetter * conic_misfit(flat) < contour_misfit(flat, fit);
 }
 
 double shorter_side(const RectangleFit& fit) { return std::min(fit.size[0], fit.size[1]); }
@@ -174,15 +185,7 @@ Attempt table(std::span<const TracePoint> bent, Surface surface, double floor_z,
 /// Level and plumb strokes as long as the sides, and hardly anything else: a part of a screen's contour. A hand that
 /// waves on its way along a wall goes aslant.
 bool drawn_in_strokes(std::span<const Eigen::Vector2d> flat, const RectangleFit& fit) {
-  constexpr double kWindow = 0.05, kAlong = 0.95;  // m; cosine
-  const auto travel = travel_directions(flat, kWindow);
-  double level = 0.0, plumb = 0.0, total = 0.0;
-  for (std::size_t i = 1; i < flat.size(); ++i) {
-    const double step = (flat[i] - flat[i - 1]).norm();
-    total += step;
-    if (std::abs(travel[i].x()) > kAlong) level += step;
-    if (std::abs(travel[i].y()) > kAlong) plumb += step;
-  }
+  const auto [level, plumb, total] = strokes_along(flat, 0.0);
   return level + plumb > kMostOfIt * total && level > kMostOfIt * fit.size[0] && plumb > kMostOfIt * fit.size[1] &&
          std::max(fit.size[0], fit.size[1]) < kLongestPart && fit.size[1] > 0.25 * fit.size[0];
 }
